@@ -1,4 +1,4 @@
-"""The machine-written folder: what derivation files lead to, rendered in memory, compared or written whole."""
+"""Generated files: rendered in memory from derivation files, and compared with a folder or written as a whole."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".py", ".tex", record.SUFFIX)
 SIGNATURE = "Written by satsym from "
-"""What the machine writes says so; no other file is ever overwritten or removed."""
+"""The beginning of every generated file; no other file is ever overwritten or removed."""
 
 KEPT = "__init__.py"
-"""The one file of the generated folder that people write."""
+"""The only file of the generated folder that people write."""
 
 MAX_SECONDS = 900.0
-"""Time limit for deriving one problem: several times what the longest shipped one takes."""
+"""Time limit in seconds for deriving one problem: several times that of the longest shipped one."""
 
 Job: TypeAlias = "tuple[Path, str, Path, float]"
-"""A derivation file, the name of a problem in it, where that is to be written, and the time that deriving may take."""
+"""A derivation file, the name of a problem in it, the folder of the results, and the time limit."""
 
 FEWEST_IN_PARALLEL = 6
-"""Problems up to which less one process derives them all."""
+"""Number of problems from which on several processes derive them."""
 
 
 def render(
@@ -44,7 +44,7 @@ def render(
     announce: Callable[[str], None] = lambda name: None,
     max_seconds: float = MAX_SECONDS,
 ) -> dict[str, str]:
-    """Everything that derivation files lead to.
+    """Render all files that derivation files lead to.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def renew(
     fresh: bool = False,
     max_seconds: float = MAX_SECONDS,
 ) -> dict[str, str | None]:
-    """Render like :func:`render`, but derive nothing that a folder already holds, as stamps of earlier runs tell.
+    """Render as :func:`render` does, but derive nothing that the folder already holds, by the stamps of earlier runs.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def renew(
 
 
 def _stated(path: Path, seconds: float) -> dict[str, str]:
-    """Name of each problem of a derivation file -> its identity."""
+    """Map the name of each problem of a derivation file to its identity."""
     from satsym.symbolic import loader
     from satsym.symbolic.declared import identity
     from satsym.symbolic.time_limit import within
@@ -127,7 +127,7 @@ def _stated(path: Path, seconds: float) -> dict[str, str]:
 
 
 def _sealed_anew(stated: Mapping[Path, Mapping[str, str]], jobs: Sequence[Job], folder: Path) -> dict[str, str]:
-    """The files of problems that state what they did in a file that does not, with the digest of that."""
+    """Return the files of unchanged problems in a file that has changed, with the new digest of that file."""
     from satsym.symbolic import loader
 
     derived, texts = {name for _, name, *_ in jobs}, {}
@@ -145,7 +145,7 @@ def _sealed_anew(stated: Mapping[Path, Mapping[str, str]], jobs: Sequence[Job], 
 
 
 def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, str]:
-    """File name -> text, for problems of derivation files."""
+    """Map file names to texts, for problems of derivation files."""
     rendered: dict[str, str] = {}
     if not jobs:
         return rendered
@@ -160,7 +160,7 @@ def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, 
 
 @contextmanager
 def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
-    """A map over processes, one for each processor; few jobs are not worth the time that processes take to begin."""
+    """Return a map over processes, one for each processor; a few jobs run in this process, which begins at once."""
     if jobs < FEWEST_IN_PARALLEL or (os.cpu_count() or 1) < 2:
         yield map
         return
@@ -169,7 +169,7 @@ def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
 
 
 def _rendered(job: Job) -> dict[str, str]:
-    """The files of one problem."""
+    """Render the files of one problem."""
     from satsym.symbolic import derive, loader
     from satsym.symbolic.time_limit import within
 
@@ -182,7 +182,7 @@ def _rendered(job: Job) -> dict[str, str]:
 def files(
     problem: Problem | Model, derive: Callable[[Problem | Model], Derivation], path: Path, folder: Path
 ) -> dict[str, str]:
-    """File name -> text of the files of one problem, the generated module verified against its derivation.
+    """Map file names to texts for one problem, with the generated module verified against its derivation.
 
     Parameters
     ----------
@@ -212,14 +212,14 @@ def files(
 
 
 def recorded_text(derivation: Derivation, path: Path, folder: Path, stating: Mapping[Path, str]) -> str:
-    """The record of a derivation: what audits read in the place of the file that states it."""
+    """Return the text of a derivation's record, which audits read in place of the file that states it."""
     from satsym.symbolic.lookup.recording import recorded
 
     return record.text_of(record.with_sources(recorded(derivation, source_of(path)), folder, stating))
 
 
 def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
-    """The module of a derivation in the minimum convention, and its kernels, verified against the derivation.
+    """Return the module of a derivation in the minimum convention, and its kernels, verified against the derivation.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
 
 
 def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[str]:
-    """Unified diffs from the files of a folder to what was rendered; empty where they agree.
+    """Return unified diffs from the files of a folder to the rendered ones; empty where they agree.
 
     Parameters
     ----------
@@ -272,7 +272,7 @@ def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[
 
 
 def write(rendered: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write what was rendered, each file whole or not at all; the paths.
+    """Write the rendered files, each whole or not at all, and return their paths.
 
     Raises
     ------
@@ -296,7 +296,7 @@ def _refuse_others(names: Iterable[str], folder: Path) -> None:
 
 
 def source_of(path: Path) -> str:
-    """How a generated file names its source: relative to the project where it is part of it, else by name."""
+    """Return the name by which a generated file cites its source: relative to the project, if the source is in it."""
     place = path.parent
     if place.name == "derivations":
         return f"{place.name}/{path.name}"

@@ -1,4 +1,4 @@
-"""How numbers are put before people: labels, units, powers of ten and readable times. Draws nothing."""
+"""Numbers for people: labels, units, powers of ten and readable times. This module draws nothing."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from satsym.status import BadInput
 _SECONDS = {"ms": 1e-3, "s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0, "hour": 3600.0}
 _SECONDS |= {"d": 86400.0, "day": 86400.0, "year": 31557600.0, "yr": 31557600.0}
 _READABLE = (("s", 600.0), ("min", 7200.0), ("h", 4 * 86400.0), ("day", 3 * 31557600.0), ("year", math.inf))
-"""Units of time, and the length in seconds from which the next one reads better."""
+"""Units of time, with the length in seconds from which the next one is easier to read."""
 _LENGTHS = frozenset("m km cm mm au AU astronomical_unit ft mile nautical_mile".split())
 ASTRONOMICAL_UNIT = 149_597_870_700.0
-"""In metres, by definition (IAU 2012, resolution B2)."""
+"""The astronomical unit in metres, by definition (IAU 2012, resolution B2)."""
 COMPARABLE = 1e-3
-"""Share of the largest component of a vector from which another one is read in the same unit."""
+"""Fraction of a vector's largest component from which another component has the same unit."""
 _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-12: "p", -9: "n", -6: "\N{MICRO SIGN}", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "ms": ("s", -3)}
-"""Units with a prefix: without it, and the power of ten that it stands for."""
+"""Units with a prefix: the unit without it, and the power of ten of the prefix."""
 _LARGEST_POWERS = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
-"""Units that take prefixes, and up to which power of ten people use them."""
+"""Units that take prefixes, with the largest power of ten in common use."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
 
 
 @lru_cache(maxsize=512)
 def formula(latex: str, fallback: str) -> str:
-    """A formula as matplotlib sets it, or the plain text where it cannot."""
+    """Return a formula as matplotlib sets it, or the plain text where it cannot."""
     from matplotlib.mathtext import MathTextParser
 
     text = f"${latex}$"
@@ -44,51 +44,52 @@ def formula(latex: str, fallback: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Text as matplotlib must be given it so that nothing in it is taken for a formula."""
+    """Escape a text so that matplotlib takes nothing in it for a formula."""
     return text.replace("$", r"\$")
 
 
 def unit_text(unit: str) -> str:
-    """A unit as people write it: ``km/s**2`` as km/s², ``km/s/rad`` as km/(s·rad). Empty for a plain number."""
+    """Write a unit for people: ``km/s**2`` as km/s², ``km/s/rad`` as km/(s·rad). Empty for a plain number."""
     written = raised("" if unit == "1" else unit).replace("*", "·")
     above, *below = written.split("/")
     return f"{above}/({'·'.join(below)})" if len(below) > 1 else written
 
 
 def raised(text: str) -> str:
-    """Text with its powers as people write them: ``4e-8 km/s^2`` as 4e-8 km/s²."""
+    """Write powers in a text with superscripts: ``4e-8 km/s^2`` as 4e-8 km/s²."""
     return _POWER.sub(lambda power: power[1].translate(_RAISED), text)
 
 
 def capitalised(text: str) -> str:
-    """A sentence with a capital letter at its start; all other letters stay as they are."""
+    """Return a sentence with a capital letter at its start and all other letters unchanged."""
     return text[:1].upper() + text[1:]
 
 
 def labelled(symbol: str, unit: str) -> str:
-    """A label of an axis: symbol, and the unit in brackets where there is one."""
+    """Return the label of an axis: symbol, and the unit in brackets where there is one."""
     bracket = unit_text(unit)
     return f"{symbol} [{bracket}]" if bracket else symbol
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A unit that reads well, and the power of ten that it is of the one that was given."""
+    """A readable unit, and its ratio to the given unit as a power of ten."""
 
     exponent: int
     unit: str
 
     @property
     def divisor(self) -> float:
-        """What numbers are divided by."""
+        """Return the number that values are divided by."""
         return float(f"1e{self.exponent}")
 
 
 @lru_cache(maxsize=512)
 def engineering(unit: str, size: float) -> Scale:
-    """The unit with the prefix that makes numbers up to ``size`` short: um/s**2 (with the micro sign) for 1e-8 km/s**2.
+    """Return the unit with the prefix that makes numbers up to ``size`` short.
 
-    The first name above the line that takes prefixes has it. Where none does, the unit stays as it is.
+    An example is um/s**2 (with the micro sign) for 1e-8 km/s**2. The first name above the fraction line that takes
+    prefixes gets it. Where none does, the unit is unchanged.
     """
     stays = Scale(0, unit)
     if not math.isfinite(size) or size == 0.0 or 1e-3 <= size < 1e4:
@@ -111,9 +112,10 @@ def engineering(unit: str, size: float) -> Scale:
 
 
 def together(quantities: Sequence[tuple[str, float]]) -> list[Scale]:
-    """Return the units in which to read quantities with a unit and a size: components of a vector have one.
+    """Return readable units for quantities with a unit and a size; components of a vector share one.
 
-    One that is far smaller than the largest with its unit has a unit of its own, for no tick would be a short number.
+    A quantity that is far smaller than the largest with its unit has a unit of its own, since its ticks would be long
+    numbers.
     """
     largest: dict[str, float] = {}
     for unit, size in quantities:
@@ -123,18 +125,18 @@ def together(quantities: Sequence[tuple[str, float]]) -> list[Scale]:
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number in a sentence, such as 42164.2 or 1.6 × 10⁻⁸."""
+    """Write a number for a sentence, such as 42164.2 or 1.6 × 10⁻⁸."""
     mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
     return mantissa.replace("-", "\N{MINUS SIGN}") + (times_ten_to(int(exponent)) if e else "")
 
 
 def times_ten_to(exponent: int) -> str:
-    """What stands behind a number that is to be multiplied by a power of ten."""
+    """Return the text after a number that is to be multiplied by a power of ten."""
     return f" × 10{str(exponent).translate(_RAISED)}"
 
 
 def time_scale(units: Iterable[str], span: float) -> tuple[float, str]:
-    """Number of model units of time in the unit that reads best for a length of time, and that unit.
+    """Return the readable unit for a length of time, and how many model units of time it has.
 
     Parameters
     ----------
@@ -155,19 +157,19 @@ def time_scale(units: Iterable[str], span: float) -> tuple[float, str]:
 
 
 def time_unit(units: Iterable[str]) -> str:
-    """The one unit of time in the units of a model's variables, ``"1"`` where it is not clear."""
+    """Return the only unit of time in the units of a model's variables, ``"1"`` where it is not clear."""
     found = {name for unit in units for name in _NAME.findall(unit) if name in _SECONDS}
     return found.pop() if len(found) == 1 else "1"
 
 
 def length_unit(units: Iterable[str]) -> str:
-    """The one unit of length among the units of a model's states, ``"1"`` where it is not clear."""
+    """Return the only unit of length among the units of a model's states, ``"1"`` where it is not clear."""
     found = _LENGTHS.intersection(units)
     return next(iter(found)) if len(found) == 1 else "1"
 
 
 def length_scale(unit: str, size: float) -> tuple[float, str]:
-    """Number of units of length in the unit that reads best for a size, and that unit: AU between planets."""
+    """Return the readable unit of length for a size, and how many given units it has: AU between planets."""
     metres = {"m": 1.0, "km": 1e3}.get(unit)
     if metres is None or not math.isfinite(size) or size * metres < 0.1 * ASTRONOMICAL_UNIT:
         return 1.0, unit

@@ -1,4 +1,4 @@
-"""Libraries that come with an extra: what to install where one is missing."""
+"""Libraries of an extra: their import, and what to install where one is missing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from satsym.status import BadInput
 
 
 def library(name: str, distribution: str, extra: str) -> ModuleType:
-    """A module of a library that satsym can do without, loaded now.
+    """Import a module of an optional library.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def library(name: str, distribution: str, extra: str) -> ModuleType:
 
 
 def written_by(name: str, distribution: str) -> ModuleType:
-    """A module of a library of the extra ``exchange``, loaded now.
+    """Import a module of a library of the extra ``exchange``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How pictures are asked for: as which files, how large, with or without titles. Loads nothing, for --help asks it."""
+"""Options of pictures: file formats, size, titles. This module loads nothing else, since --help uses it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Look:
 
     @classmethod
     def of(cls, formats: str | Sequence[str], titled: bool = True, size: str = "screen") -> Look:
-        """For one kind of files, or several.
+        """Return the options for one file format, or several.
 
         Raises
         ------
@@ -60,21 +60,21 @@ SCREEN = Look()
 WIDTH = 10.0
 """Width of a page on a screen, in inches."""
 HIGHEST = 40.0
-"""Greatest height of a page, in inches; a page grows downwards with what is on it."""
+"""Largest height of a page, in inches; a page grows with its content."""
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a size of pages means."""
+    """The width of pages and the size of letters of one page size."""
 
     width: float
     """Width of the widest page, in inches."""
     letters: float
-    """Letters and lines, and heights, relative to those on a screen."""
+    """Size of letters, lines and heights, relative to those on a screen."""
     across: int = 3
-    """Panels side by side, at most."""
+    """Largest number of panels side by side."""
     highest: float = HIGHEST
-    """In inches."""
+    """Largest height, in inches."""
 
 
 SHEETS = {

@@ -1,4 +1,4 @@
-"""The units that results are shown in: those of the model, or none where its gravitational parameter is 1."""
+"""The units of shown results: those of the model, or none where its gravitational parameter is 1."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from satsym.instance import Instance
 from satsym.spec import ProblemSpec, Variable
 
 ROUNDING = 1e-12
-"""Relative error of a gravitational parameter that is computed from other parameters."""
+"""Largest relative error of a gravitational parameter that is computed from other parameters."""
 
 
 def spec_of(instance: Instance) -> ProblemSpec:
-    """What the model of an instance states, without units where its gravitational parameter is 1.
+    """Return the specification of an instance's model, without units where its gravitational parameter is 1.
 
     By convention the numbers of such an instance are multiples of those of a circular orbit, so that units would
     mislead; a body whose parameter is exactly 1 in the units of its model loses them as well. Files and JSON keep the

@@ -1,7 +1,7 @@
-"""What was derived before, and from what: nothing is derived twice as long as its stamp fits.
+"""Stamps of earlier derivations: nothing is derived again as long as its stamp is valid.
 
-A stamp holds digests only, of what was read and of what was written. A missing, damaged or foreign one costs time and
-no more, and `satsym derive --check` relies on none.
+A stamp holds only digests, of the files that were read and written. A missing, damaged or foreign one costs time and
+nothing more, and `satsym derive --check` uses none.
 """
 
 from __future__ import annotations
@@ -21,33 +21,33 @@ _LIBRARIES = ("mpmath", "numpy", "sympy")
 
 
 class Made(msgspec.Struct, frozen=True):
-    """What one problem led to."""
+    """The digests of one problem and its files."""
 
     identity: str
-    """Digest of what was declared; empty where it has none."""
+    """Digest of the declarations; empty where there is none."""
 
     files: dict[str, str]
-    """File name -> digest of its content."""
+    """Digests of the generated files, by name."""
 
 
 class Stamp(msgspec.Struct, frozen=True):
-    """What one derivation file led to."""
+    """The digests of one derivation file and its problems."""
 
     engine: str
     reached: dict[str, str]
-    """The files it consists of -> digests of their content; empty for one that was looked for and is not there."""
+    """Digests of the files that were read, by path; empty for one that was sought in vain."""
 
     problems: dict[str, Made]
 
 
 def engine() -> str:
-    """A digest of all code that files are written by."""
+    """Return a digest of all code that writes generated files."""
     libraries = " ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     return _digest(f"{sys.version} {libraries} {source_files.digest(_ENGINE)}")
 
 
 def read(path: Path, known: str) -> Stamp | None:
-    """The stamp of a derivation file, if it is one of that engine."""
+    """Return the stamp of a derivation file, if it belongs to this engine."""
     try:
         found = msgspec.json.decode(user_cache.read(_place(path)), type=Stamp)
     except (msgspec.MsgspecError, UnicodeDecodeError):
@@ -56,24 +56,24 @@ def read(path: Path, known: str) -> Stamp | None:
 
 
 def problems(stamp: Stamp | None) -> list[str]:
-    """Names of the problems of a derivation file, in its order."""
+    """Return the names of the problems of a derivation file, in its order."""
     return list(stamp.problems) if stamp else []
 
 
 def holds(stamp: Stamp, folder: Path) -> bool:
-    """Whether all that a derivation file consisted of is what it was, and so is all in the folder that came of it."""
+    """Tell whether the sources of a derivation file and its generated files are unchanged."""
     read_alike = all(source_files.digest_of(Path(path)) == digest for path, digest in stamp.reached.items())
     return read_alike and all(_in_place(made, folder) for made in stamp.problems.values())
 
 
 def spares(stamp: Stamp | None, name: str, identity: str, folder: Path) -> bool:
-    """Whether a problem states what it did, and what came of it is in the folder, whatever else its file states."""
+    """Tell whether a problem and its generated files are unchanged, whatever else its file states."""
     made = stamp.problems.get(name) if stamp else None
     return made is not None and made.identity == identity != "" and _in_place(made, folder)
 
 
 def keep(path: Path, before: Stamp | None, known: str, identities: Mapping[str, str], texts: Mapping[str, str]) -> None:
-    """Keep the stamp of a derivation file that has been loaded; what was not derived is as in the one before."""
+    """Save the stamp of a derivation file that has been loaded; problems that were not derived keep their old entry."""
     from satsym.symbolic import loader
 
     if engine() != known:  # edited while it was at work

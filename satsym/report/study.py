@@ -1,4 +1,4 @@
-"""Studies from beginning to end: what is asked is written down, missing rows are computed, and all is merged."""
+"""Studies as a whole: the request is saved, missing rows are computed, and all rows are merged."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from satsym.studies.running import Watch, run
 from satsym.wording import printable, shown, suggestion
 
 LOG = "times.log"
-"""When chunks were done and how long they took: not of the results, for it is never twice the same."""
+"""The file with the times at which chunks were finished; it is not part of the results, which are reproducible."""
 
 MOST_BYTES_READ, NUMBER = 2**24, 8
-"""Bytes of a study.json that are read, and of a number."""
+"""Largest size of a study.json that is read, and the size of a number, in bytes."""
 
 
 def carry_out(
@@ -45,7 +45,7 @@ def carry_out(
     watch: Watch = lambda _: None,
     more: Mapping[str, Content] = MappingProxyType({}),
 ) -> dict[str, Any]:
-    """Carry out a study, or what is missing of it; what result.json holds.
+    """Carry out a study, or its missing part; return the contents of result.json.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def carry_out(
 
 
 def written_as(study: Study, form: str | None) -> Study:
-    """A study whose table is written as what has that name.
+    """Return a study whose table is written in the named format.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def _carried_out(
 
 
 def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
-    """Refuse a folder that holds anything else than this study, or it where it is not to be resumed."""
+    """Refuse a folder that holds anything but this study, or this study if it is not to be resumed."""
     sets.keep_apart(folder, STUDY)
     before = asked(folder)
     if before is None:
@@ -157,7 +157,7 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
 
 
 def _done(folder: Path) -> dict[str, Any] | None:
-    """What result.json holds of a study that is done: whole, and without rows that may be answered yet."""
+    """Return the result.json of a finished study whose rows are all final; else ``None``."""
     try:
         found: dict[str, Any] = json.loads(sets.read(folder).result)
     except BadInput:
@@ -167,12 +167,12 @@ def _done(folder: Path) -> dict[str, Any] | None:
 
 
 def _passing(done: Mapping[str, Any]) -> bool:
-    """Whether there are rows that another run may answer."""
+    """Tell whether there are rows that another run may answer."""
     return any(status in done["statuses"] for status in PASSING)
 
 
 def _refuse_too_large(study: Study, folder: Path) -> None:
-    """Refuse trajectories for which there is no room: first in chunks, then in files."""
+    """Refuse trajectories for which there is no space: first in chunks, then in files."""
     if not study.trajectories:
         return
     spec, solver, rows = study.instance.model.spec, study.instance.solver, study.design.count
@@ -188,7 +188,7 @@ def _refuse_too_large(study: Study, folder: Path) -> None:
 
 
 def is_study(folder: Path) -> bool:
-    """Whether a folder holds a study, finished or not."""
+    """Tell whether a folder holds a study, finished or not."""
     try:
         command = sets.command_of(folder)
     except BadInput:
@@ -197,7 +197,7 @@ def is_study(folder: Path) -> bool:
 
 
 def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
-    """Draw the study of a folder; what its result.json holds, and the pictures, which are there, or in another folder.
+    """Draw the study of a folder; return its result.json and the pictures, there or in another folder.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[di
 
 
 def asked(folder: Path) -> dict[str, str] | None:
-    """What the study of a folder depends on, if there is one.
+    """Return the identity of the study in a folder, if there is one.
 
     Raises
     ------
@@ -240,7 +240,7 @@ def asked(folder: Path) -> dict[str, str] | None:
 
 @contextmanager
 def _log(folder: Path) -> Iterator[Callable[[str], None]]:
-    """Appends lines with the time; a log that cannot be written ends no study."""
+    """Return a function that appends lines with the time; a log that cannot be written does not end a study."""
     import time
 
     with (folder / LOG).open("a", encoding="utf-8") as stream:

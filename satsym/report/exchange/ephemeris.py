@@ -1,4 +1,4 @@
-"""A motion about a central body in kilometres and seconds, in a frame of the sky, with its burns."""
+"""Ephemerides: a motion about a central body in kilometres and seconds, in a frame of the sky, with its burns."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from satsym.solution import Simulation, Solution
 from satsym.status import BadInput
 
 MU_TOLERANCE = 0.01
-"""By how much, relative, the gravitational parameter of a model may differ from that of the body that it names."""
+"""Largest relative difference of a model's gravitational parameter from that of the named body."""
 FINEST = 2.0 * np.pi / 90.0
-"""Angle about the centre between two points of what is exported, in rad: readers such as STK ask for so many."""
+"""Largest angle about the centre between two exported points, in rad, as readers such as STK require."""
 COARSEST = 0.2
-"""Angle between two nodes beyond which what lies between is not interpolated: its error is 1e-9 of the distance."""
+"""Largest angle between two nodes for interpolation, in rad: its error is then 1e-9 of the distance."""
 LATEST = 1e10
-"""Seconds from the epoch, some three hundred years."""
+"""Largest time from the epoch in seconds, some three hundred years."""
 IDLE = 1e-6
-"""Thrust that is smaller than this share of the largest is none."""
+"""Fraction of the largest thrust below which thrust counts as zero."""
 
 
 @dataclass(frozen=True)
 class Burn:
-    """A time during which there is thrust.
+    """A time interval with thrust.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Burn:
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """Points between two times at which the thrust jumps.
+    """Points of a motion between two jumps of the thrust.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Ephemeris:
-    """What is exported of a motion.
+    """A motion in the sky, ready for export.
 
     Attributes
     ----------
@@ -142,22 +142,22 @@ class Ephemeris:
 
     @property
     def times(self) -> Array:
-        """Return the times of all arcs, shape (M,); where one arc ends and another begins the time occurs once."""
+        """Return the times of all arcs, shape (M,); a time that separates two arcs occurs once."""
         return self._joined([arc.times for arc in self.arcs])
 
     @property
     def position(self) -> Array:
-        """At :attr:`times`, shape (3, M)."""
+        """Return the positions at :attr:`times`, shape (3, M)."""
         return self._joined([arc.position for arc in self.arcs])
 
     @property
     def velocity(self) -> Array:
-        """At :attr:`times`, shape (3, M)."""
+        """Return the velocities at :attr:`times`, shape (3, M)."""
         return self._joined([arc.velocity for arc in self.arcs])
 
     @property
     def thrust(self) -> Array:
-        """At :attr:`times`, shape (3, M); where it jumps that before the jump."""
+        """Return the thrust at :attr:`times`, shape (3, M); where it jumps, the value before the jump."""
         return self._joined([arc.thrust for arc in self.arcs])
 
     @staticmethod
@@ -165,11 +165,11 @@ class Ephemeris:
         return np.concatenate([parts[0], *(part[..., 1:] for part in parts[1:])], axis=-1)
 
     def moment(self, seconds: float) -> datetime:
-        """A time of the motion in UTC, to the microsecond."""
+        """Convert a time of the motion to UTC, to the microsecond."""
         return self.orbit.epoch + timedelta(seconds=seconds)
 
     def utc(self, seconds: float) -> str:
-        """A time of the motion in UTC as CCSDS writes it, to the nanosecond, such as 2026-03-20T12:00:00.000000000."""
+        """Write a time of the motion in UTC as CCSDS does, to the nanosecond: 2026-03-20T12:00:00.000000000."""
         whole, nanoseconds = divmod(round(seconds * 1e9), 10**9)
         epoch = self.orbit.epoch
         nanoseconds += epoch.microsecond * 1000
@@ -178,7 +178,7 @@ class Ephemeris:
 
 
 def placed(instance: Instance) -> OrbitOptions:
-    """The orbit that an instance states.
+    """Return the [orbit] table of an instance after checks that its motion can be placed in the sky.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def placed(instance: Instance) -> OrbitOptions:
 
 
 def _length_unit(instance: Instance) -> str:
-    """The unit of the position.
+    """Return the unit of the position.
 
     Raises
     ------
@@ -228,9 +228,9 @@ def _length_unit(instance: Instance) -> str:
 
 
 def _turn(orbit: OrbitOptions) -> Array:
-    """From the model's axes to those of the frame: about its third axis, its first one and the third one of the frame.
+    """Return the rotation from the model's axes to the frame: about axis three, one and three in turn.
 
-    Of a motion in space all angles are zero.
+    The angles are zero for a motion in space.
     """
 
     def about(axis: int, angle: float) -> Array:
@@ -244,7 +244,7 @@ def _turn(orbit: OrbitOptions) -> Array:
 
 
 def _parts(whole: Arc) -> Iterator[tuple[Arc, NDArray[np.intp]]]:
-    """A motion cut where a time occurs twice, for the thrust jumps there; with the places of each part."""
+    """Split a motion where a time occurs twice, at a jump of the thrust; also return the places of each part."""
     jumps = np.flatnonzero(np.diff(whole.times) <= 0.0) + 1
     for where in np.split(np.arange(len(whole.times)), jumps):
         if len(where) > 1:
@@ -253,9 +253,9 @@ def _parts(whole: Arc) -> Iterator[tuple[Arc, NDArray[np.intp]]]:
 
 
 def _filled(arc: Arc, mu: Array, instance: Instance) -> Arc:
-    """An arc with points as near to each other as readers want them.
+    """Return an arc with additional points, as close to each other as readers need.
 
-    Between two nodes lies the polynomial of fifth degree that has their positions, velocities and accelerations.
+    Between two nodes the motion is the polynomial of fifth degree with their positions, velocities and accelerations.
 
     Raises
     ------
@@ -296,7 +296,7 @@ def _filled(arc: Arc, mu: Array, instance: Instance) -> Arc:
 def _between(
     span: float, share: Array, place: tuple[Array, Array], pace: tuple[Array, Array], rate: tuple[Array, Array]
 ) -> tuple[Array, Array]:
-    """Position and velocity at shares of a span, from position, velocity and acceleration at both ends."""
+    """Interpolate position and velocity at fractions of a span, from the values and accelerations at both ends."""
     a, b, c = place[0], pace[0] * span, 0.5 * rate[0] * span**2
     # the rest of the polynomial, share**3 (d + e share + f share**2), meets what is given at the end
     p, v, w = place[1] - a - b - c, pace[1] * span - b - 2.0 * c, rate[1] * span**2 - 2.0 * c
@@ -309,7 +309,7 @@ def _between(
 
 
 def _burns(whole: Arc) -> Iterator[Burn]:
-    """Runs of intervals with thrust."""
+    """Return the burns: runs of intervals with thrust."""
     size = np.linalg.norm(whole.thrust, axis=0)
     if not size.max() > 0.0:
         return
@@ -321,7 +321,10 @@ def _burns(whole: Arc) -> Iterator[Burn]:
 
 
 def _within(times: Array, size: Array, largest: float) -> Iterator[Burn]:
-    """The burn of a run; none of one that has no length. At its ends may be zero thrust at a time that occurs twice."""
+    """Return the burn in a run of intervals; none if it has no length.
+
+    At its ends thrust may be zero at a time that occurs twice.
+    """
     used = np.flatnonzero(size > IDLE * largest)
     if not used.size:
         return
@@ -335,7 +338,7 @@ def _within(times: Array, size: Array, largest: float) -> Iterator[Burn]:
 
 
 def _reference(instance: Instance, arcs: tuple[Arc, ...], turn: Array, length: float, second: float) -> Array | None:
-    """Where the reference of the model is, at the times of all arcs."""
+    """Return the positions of the model's reference at the times of all arcs."""
     if not instance.model.spec.has_reference:
         return None
     times = Ephemeris._joined([arc.times for arc in arcs]) / second

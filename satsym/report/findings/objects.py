@@ -1,4 +1,4 @@
-"""An audit as objects for JSON."""
+"""Audits as objects for JSON."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from satsym.report.findings.review import counts
 
 
 def audit_object(judged: Sequence[Judged]) -> dict[str, Any]:
-    """All rows, the findings, and how many rows there are of each verdict."""
+    """Return all rows, the findings, and the number of rows with each verdict."""
     by_document: dict[str, list[Judged]] = {}
     for row in judged:
         by_document.setdefault(row.document, []).append(row)
@@ -25,7 +25,7 @@ def audit_object(judged: Sequence[Judged]) -> dict[str, Any]:
 
 
 def coverage_object(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -> dict[str, Any]:
-    """What of the documents, and of their texts as far as they are known, has no row."""
+    """Return the parts of documents, and of their known texts, that have no row."""
     return {
         "coverage": [
             {

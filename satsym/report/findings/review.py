@@ -1,4 +1,4 @@
-"""One document, judged: its findings numbered by weight, and the sentences that say what falls and what stands."""
+"""The review of one judged document: findings numbered by weight, and sentences on what is wrong and what is right."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from satsym.report.findings import terms
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
-"""What is told in full; of the rest a sentence does."""
+"""Weights of findings that are described in full; others are described in a sentence."""
 OPEN = ("undecided", "illegible")
-"""Verdicts that are none."""
+"""Verdicts of rows that could not be judged."""
 _PLACES, _ITEMS = 3, 6
-"""Rows, and items, that are named before the rest is counted."""
+"""Largest numbers of rows, and of items, that are named before the rest is counted."""
 _QUOTES = 5
-"""Conclusions that stand, if they are more than those, are named without their words."""
+"""Largest number of right conclusions that are quoted; of more, only the names are given."""
 STANDS = ("confirmed", "imprecise", "notation", "unsound")
-"""Verdicts of what is so, if only by another reason, in other letters or but for its last digits."""
+"""Verdicts on rows that are right, if only for another reason, in other letters or up to the last digits."""
 KINDS = ("equation", "matrix", "algorithm", "number", "unit", "table", "claim")
 IN_WORDS = ("claim", "algorithm", "table", "number")
 """Kinds of rows whose measured terms are put in words."""
@@ -33,7 +33,7 @@ _END = re.compile(r"[.](?=\s+[`A-Z0-9])")
 
 @dataclass(frozen=True)
 class Review:
-    """A document and what was found in it.
+    """A judged document with its findings.
 
     Attributes
     ----------
@@ -49,13 +49,13 @@ class Review:
 
     @classmethod
     def of(cls, ledger: Ledger, rows: Sequence[Judged], texts: Texts) -> Review:
-        """What was judged, in the language of a report as far as it is known in that."""
+        """Make the review of a judged document, in a language as far as its words are known in it."""
         if texts.language == "id":
             rows = [_in_indonesian(row) for row in rows]
         return cls(ledger, rows, texts)
 
     def translated(self, row: Judged) -> bool:
-        """Whether what a row is about is in the language of the report; a ledger may have it in English alone."""
+        """Tell whether the subject of a row is in the language of the report; ledgers may have only English."""
         return self.texts.language == "en" or (self.texts.language == "id" and bool(row.says_id))
 
     @property
@@ -65,7 +65,7 @@ class Review:
 
     @property
     def byline(self) -> str:
-        """Authors and year."""
+        """Return authors and year."""
         document = self.ledger.document
         return ", ".join(filter(None, [document.authors, str(document.year or "")]))
 
@@ -76,7 +76,7 @@ class Review:
 
     @cached_property
     def number_of(self) -> dict[str, int]:
-        """Key of a faulty row -> the number of its finding."""
+        """Map the key of each faulty row to the number of its finding."""
         return {
             row.key: number
             for number, found in enumerate(self.findings, start=1)
@@ -85,14 +85,14 @@ class Review:
 
     @property
     def by_weight(self) -> Iterable[tuple[Weight, list[tuple[int, Finding]]]]:
-        """The numbered findings of each weight that there are some of."""
+        """Return the numbered findings by weight, without weights that have none."""
         numbered = list(enumerate(self.findings, start=1))
         groups = [(weight, [entry for entry in numbered if entry[1].weight is weight]) for weight in Weight]
         return [(weight, group) for weight, group in groups if group]
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows have each verdict."""
+        """Return the number of rows with each verdict."""
         return counts(self.rows)
 
     @property
@@ -110,26 +110,26 @@ class Review:
 
     @cached_property
     def formulas(self) -> dict[str, Any]:
-        """Key of a row -> the formula or matrix that it prints, if it prints one."""
+        """Map the keys of rows to the formulas or matrices that they print."""
         return {row.key: row.printed for row in self.ledger.rows if row.printed is not None}
 
     @property
     def open(self) -> list[Judged]:
-        """Rows that could not be judged."""
+        """Return the rows that could not be judged."""
         return [row for row in self.rows if row.verdict in OPEN]
 
     @property
     def confirmed_items(self) -> list[str]:
-        """Items all of whose parts are confirmed."""
+        """Return the items all of whose parts are confirmed."""
         other = {row.item for row in self.rows if row.verdict != "confirmed"}
         return items([row for row in self.rows if row.item not in other])
 
     def places(self, rows: Sequence[Judged]) -> str:
-        """Where a finding shows; of many the first."""
+        """Return the places where a finding occurs; of many, the first."""
         return self._named([self.placed(row.key) for row in rows])
 
     def spoiled(self, found: Finding) -> str:
-        """What is wrong because of a finding, by item."""
+        """Return, by item, what is wrong because of a finding."""
         return self._named([self.placed(name) for name in items(found.spoiled)], _ITEMS)
 
     def _named(self, names: Sequence[str], most: int = _PLACES) -> str:
@@ -139,7 +139,7 @@ class Review:
         return self.texts.counted("audit", "more", len(names) - most + 1, listed=first)
 
     def fact(self, row: Judged) -> str:
-        """What holds instead of a wrong claim: a readable sentence if there is one, else the diagnosis."""
+        """Return what is true instead of a wrong claim: a readable sentence if there is one, else the diagnosis."""
         if row.why and not (row.by_formula and row.form):
             return row.why
         denied = say("denied")
@@ -149,22 +149,22 @@ class Review:
         return f"{said} {row.why}".rstrip()
 
     def in_words(self, row: Judged) -> str:
-        """What was measured, as sentences and mathematics."""
+        """Return the measured values of a row as sentences and mathematics."""
         return terms.sentences(row.derived, self.texts)
 
     def chosen(self, row: Judged) -> str:
-        """The numbers that the auditor chose for judging a row, each named; empty where there are none."""
+        """Return the named numbers that the auditor chose for judging a row; empty where there are none."""
         code = f"{flat(row.printed) if row.kind == 'claim' else ''} {row.evidence}"
         return "; ".join(terms.chosen(code, self.texts))
 
     def placed(self, name: str) -> str:
-        """The name of a place in the language of the report: "section 4.2" as "bagian 4.2"."""
+        """Return the name of a place in the language of the report: "section 4.2" as "bagian 4.2"."""
         if self.texts.language == "en":
             return name
         return _PLACE_WORD.sub(lambda word: self.texts.find("places", word[0]) or word[0], name)
 
     def brief(self, found: Finding) -> str:
-        """The first sentence of what is wrong, without its end; of few places that differ, that of each."""
+        """Return the first sentence of a diagnosis without its full stop; for a few differing places, that of each."""
         said = list(dict.fromkeys(_first_sentence(row.why) for row in found.places if row.why))
         if len(said) > _PLACES:
             return said[0]
@@ -172,7 +172,7 @@ class Review:
 
     @cached_property
     def summary(self) -> list[str]:
-        """Which conclusions fall, which stand, and why: at most six sentences."""
+        """Summarise in at most six sentences which conclusions are wrong or right, and why."""
         right, total = sum(row.verdict == "confirmed" for row in self.rows), len(self.rows)
         rest = self._say("rest", len(self.findings)) if self.findings and total > 1 else ""
         how = {0: "right_none", total: "right_all"}.get(right, "right_some")
@@ -195,7 +195,7 @@ class Review:
         return sentences
 
     def _conclusions(self) -> list[str]:
-        """Say which conclusions fall, with the reason of each, and which stand."""
+        """State which conclusions are wrong, with the reason of each, and which are right."""
         conclusions = [row for row in self.rows if row.role == "conclusion" and row.verdict not in OPEN]
         causes = [(number, found) for number, found in enumerate(self.findings, start=1) if found.overturned]
         falling = {row.key for _, found in causes for row in found.overturned}
@@ -215,13 +215,13 @@ class Review:
         return said
 
     def _reserve(self, row: Judged) -> str:
-        """With what reserve a conclusion stands."""
+        """State the reserve with which a conclusion is right."""
         if row.verdict != "unsound":
             return ""
         return f", {self.texts.get('audit', 'of_nothing' if row.vacuous else 'other_reason')}"
 
     def _fallen(self, found: Finding) -> str:
-        """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
+        """State the conclusions that a finding overturns, where they are, and why."""
         first = found.overturned[0]
         places = "; ".join(self.placed(row.key) for row in found.overturned)
         why = _first_sentence(self.fact(first)) if first.why else self.brief(found)
@@ -240,7 +240,7 @@ def title(reviews: Sequence[Review]) -> str:
 
 
 def where(row: Judged) -> str:
-    """Return where a finding stands, unless its name says so."""
+    """Return the place of a finding, unless its name contains it."""
     return "" if row.key.startswith(row.where) else row.where
 
 
@@ -253,13 +253,13 @@ def _quoted(row: Judged) -> str:
 
 
 def counts(judged: Sequence[Judged]) -> dict[str, int]:
-    """How many rows have each verdict; those that no row has are left out."""
+    """Return the number of rows with each verdict, without verdicts that no row has."""
     found = {verdict: sum(row.verdict == verdict for row in judged) for verdict in VERDICTS}
     return {verdict: number for verdict, number in found.items() if number}
 
 
 def items(judged: Sequence[Judged]) -> list[str]:
-    """Items, each once; how many rows it has in brackets where there are several."""
+    """Return items, each once; with the number of rows in brackets where there are several."""
     numbers: dict[str, int] = {}
     for row in judged:
         numbers[row.item] = numbers.get(row.item, 0) + 1
@@ -272,7 +272,7 @@ def _in_indonesian(row: Judged) -> Judged:
 
 
 def quote(row: Judged) -> tuple[str, str]:
-    """What is printed, in the document's words or as its formula, or what it is about; before it the label of that."""
+    """Return what a row prints, in the document's words or as its formula, or its subject, after its label."""
     if row.original:
         return "says", row.original
     if row.kind != "claim" and row.printed:
@@ -281,32 +281,32 @@ def quote(row: Judged) -> tuple[str, str]:
 
 
 def measured(row: Judged) -> str:
-    """What was measured, where the sentence for people does not say it."""
+    """Return the measured values, if the sentence for people does not contain them."""
     return row.derived if row.why and not row.by_formula and row.derived not in row.why else ""
 
 
 def correction(row: Judged) -> str:
-    """The right formula of a judged row; empty where its explanation already has it."""
+    """Return the right formula of a judged row; empty where its explanation already contains it."""
     said = row.why or row.diagnosis
     return "" if (row.why and not row.by_formula) or row.derived in said else row.derived
 
 
 def is_put_in_words(row: Judged) -> bool:
-    """Whether the diagnosis of a formula is the edit that puts it right."""
+    """Tell whether the diagnosis of a formula is the edit that corrects it."""
     return row.kind != "claim" and bool(row.form)
 
 
 def is_mathematical(row: Judged) -> bool:
-    """Whether what is right there is a formula or a matrix."""
+    """Tell whether the correct content of a row is a formula or a matrix."""
     return row.kind in ("equation", "matrix", "algorithm")
 
 
 def recompute(row: Judged) -> tuple[str, str]:
-    """What was measured in numbers, and the command that does it again."""
+    """Return the measured numbers, and the command that computes them again."""
     numbers, _, command = row.evidence.rpartition("; satsym ")
     return (numbers, f"satsym {command}") if numbers else ("", row.evidence)
 
 
 def flat(printed: Any) -> str:
-    """What is printed, on one line."""
+    """Return the printed content on one line."""
     return printed if isinstance(printed, str) else f"[{', '.join(map(flat, printed))}]"

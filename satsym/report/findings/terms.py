@@ -1,4 +1,4 @@
-"""What was measured, in words and mathematics instead of code: ``len(meanings['x']) = 2`` as a sentence."""
+"""Measured values of propositions in words and mathematics: ``len(meanings['x']) = 2`` as a sentence."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _SIGNS = {ast.Add: " + ", ast.Sub: " - ", ast.Mult: " × ", ast.Div: "/", ast.Po
 _BINDING = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.Pow: 3}
 _OPENS, _CLOSES = "([{", ")]}"
 _LONGEST_TERM = 240
-"""Characters of a term, as it was measured, beyond which no sentence would help."""
+"""Largest number of characters of a measured term that is put in words."""
 
 
 def sentences(measured: str, texts: Texts) -> str:
-    """What was measured, as sentences in the language of the texts.
+    """Return measured values as sentences in the language of the texts.
 
     Parameters
     ----------
@@ -32,10 +32,10 @@ def sentences(measured: str, texts: Texts) -> str:
 
 
 def chosen(code: str, texts: Texts) -> list[str]:
-    """The numbers in a proposition that the document does not print: the auditor chose them.
+    """Return the numbers in a proposition that the document does not print, but the auditor chose.
 
-    Printed numbers stand between quotes there; what is left are conventions, such as what counts as near, and
-    numbers that are given by name, such as the initial guess of a printed program.
+    Printed numbers are in quotes in a proposition; the others are conventions, such as limits of nearness, and numbers
+    that are given by name, such as the initial guess of a printed program.
     """
     found = {_word(name, texts): texts.get("conventions", name) for name in _CONVENTION.findall(code)}
     for match in _PROGRAM.finditer(code):
@@ -58,7 +58,7 @@ def _sentence(part: str, texts: Texts) -> str:
 
 
 def term_in_words(term: str, texts: Texts) -> str:
-    """A term of a proposition in words; one that cannot be put so, as it stands."""
+    """Return a term of a proposition in words, or unchanged where no words are known."""
     if len(term) > _LONGEST_TERM:
         return texts.get("terms", "long")
     try:
@@ -68,7 +68,7 @@ def term_in_words(term: str, texts: Texts) -> str:
 
 
 def _taken_apart(part: str) -> tuple[str, str, str]:
-    """The term, its value and the remark behind it."""
+    """Split a measured term into the term, its value and the remark after it."""
     places = [k for k in _outside(part) if part.startswith(" = ", k) or part.startswith(" is ", k)]
     if not places:
         return "", "", ""
@@ -92,7 +92,7 @@ def _divided(text: str, by: str) -> Iterator[str]:
 
 
 def _outside(text: str) -> Iterator[int]:
-    """The places outside of brackets and quotes."""
+    """Return the places outside brackets and quotes."""
     depth, quote = 0, ""
     for k, character in enumerate(text):
         if quote:

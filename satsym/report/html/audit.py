@@ -1,4 +1,4 @@
-"""An audit as one page: what falls and what stands, findings by weight, every row, and what rows are held against."""
+"""An audit as one page: conclusions, findings by weight, every row, and the equations it is compared with."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def render(
     language: str = "en",
     announce: Callable[[str], None] = lambda _: None,
 ) -> str:
-    """A page that needs nothing but itself.
+    """Return the audit as a self-contained page.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def _file(name: str) -> Markup:
 
 
 def _contents(texts: Texts, reviews: Sequence[Review]) -> Markup:
-    """Links to the sections."""
+    """Return links to the sections."""
     links = [(review.key, review.key) for review in reviews] + [
         ("derived-equations", texts.get("audit", "derived")),
         ("all-verdicts", texts.get("audit", "legend")),
@@ -86,7 +86,7 @@ def _contents(texts: Texts, reviews: Sequence[Review]) -> Markup:
 
 
 def _overview(texts: Texts, reviews: Sequence[Review]) -> Markup:
-    """How many rows have each verdict, and what verdicts and weights mean."""
+    """Return the number of rows with each verdict, and the meaning of verdicts and weights."""
     head = [texts.get("audit", "verdict"), *(review.key for review in reviews)]
     rows = [
         tag(
@@ -109,7 +109,7 @@ def _overview(texts: Texts, reviews: Sequence[Review]) -> Markup:
 
 
 def _filters(texts: Texts, reviews: Sequence[Review]) -> Markup:
-    """Choices of what is shown, for browsers that run the script."""
+    """Return the choices of rows to show, for browsers that run the script."""
     choices: dict[str, dict[str, str]] = {
         "document": {review.key: review.key for review in reviews},
         "weight": {weight.value: texts.get("weights", weight.value) for weight in Weight},
@@ -129,7 +129,7 @@ def _filters(texts: Texts, reviews: Sequence[Review]) -> Markup:
 
 
 def _equations(texts: Texts, found: Mapping[str, section.Derived], documents: Sequence[Section]) -> Markup:
-    """What the rows are held against."""
+    """Return the derived equations with which the rows are compared."""
     parts = [tag("h2", texts.get("audit", "derived")), tag("p", texts.get("audit", "derived_about"))]
     last = ""
     for address, equation in found.items():

@@ -1,4 +1,4 @@
-"""HTML from pieces: what is no markup already is escaped, whoever wrote it."""
+"""HTML built from pieces; text that is not markup is escaped, whoever wrote it."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ _VOID = frozenset({"meta", "input"})
 
 
 class Markup(str):
-    """Text that is HTML already."""
+    """A text that is HTML."""
 
     __slots__ = ()
 
 
 def tag(name: str, /, *inside: str, **attributes: str | bool) -> Markup:
-    """An element; attributes that are false are left out, and underscores at the end or inside are for Python."""
+    """Return an element; false attributes are left out, and underscores in names are adapted from Python."""
     given = "".join(_attribute(key, value) for key, value in attributes.items() if value is not False)
     if name in _VOID:
         return Markup(f"<{name}{given}>")
@@ -27,7 +27,7 @@ def tag(name: str, /, *inside: str, **attributes: str | bool) -> Markup:
 
 
 def joined(*pieces: str, by: str = "") -> Markup:
-    """Pieces one after the other."""
+    """Join pieces of HTML."""
     return Markup(by.join(piece if isinstance(piece, Markup) else escape(piece) for piece in pieces))
 
 
@@ -45,7 +45,7 @@ _OPERATOR = re.compile(r"\\operatorname\{([^{}\\]*)\}")
 
 @cache
 def math(tex: str, *, block: bool = False) -> Markup:
-    """A formula; names of several letters are words, so that they are read as such."""
+    """Return a formula; names of several letters are set as words."""
     from latex2mathml.converter import convert_to_element
 
     plain = _OPERATOR.sub(r"\\text{\1}\\,", _UPRIGHT.sub(r"\\text{\1}", tex))
@@ -74,7 +74,7 @@ _PIECES = re.compile(r"\$([^$]+)\$|\\\[(.+?)\\\]|\\(?:eq)?ref\{([^{}]*)\}", re.D
 
 
 def prose(text: str, numbers: Mapping[str, str]) -> Markup:
-    """A sentence.
+    """Return a sentence of :mod:`satsym.report.texts` as HTML.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def prose(text: str, numbers: Mapping[str, str]) -> Markup:
 
 
 def scrolled(*inside: Markup) -> Markup:
-    """What may be wider than the page, and can then be scrolled with the keyboard, too."""
+    """Return contents that may be wider than the page and can be scrolled by keyboard, too."""
     return tag("div", *inside, class_="wide", tabindex="0")
 
 

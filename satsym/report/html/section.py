@@ -38,7 +38,7 @@ _REASON = re.compile(r"(?<=[:;] )\((\d+)\)")
 
 
 class Section:
-    """The section of one document."""
+    """The section on one document."""
 
     def __init__(self, review: Review) -> None:
         self._review, self._texts = review, review.texts
@@ -49,7 +49,7 @@ class Section:
         self._anchors = {key: f"{review.key}.{anchor}" for key, anchor in _anchors(self._judged)}
 
     def render(self) -> Markup:
-        """All that is said of it."""
+        """Return the whole section."""
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
@@ -61,7 +61,7 @@ class Section:
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
 
     def _chart(self) -> Markup:
-        """How much of each kind stands, falls and is open, as a table with bars."""
+        """Return a table with bars of how many rows of each kind are right, wrong and open."""
         names = [self._word(key) for key in ("of_kind", "stands", "falls_here", "open_here")]
         head = tag("tr", *(tag("th", name, scope="col") for name in names), tag("td", ""))
         lines = []
@@ -75,7 +75,7 @@ class Section:
         return tag("table", caption, tag("thead", head), tag("tbody", *lines), class_="chart")
 
     def users(self, address: str) -> list[Markup]:
-        """Links to the rows that are held against a derived thing."""
+        """Return links to the rows that are compared with a derived expression."""
         return [self._link(row.key) for row in self.rows if address in addresses(row)]
 
     def _of_weight(self, weight: Weight, group: Iterable[tuple[int, Finding]]) -> Markup:
@@ -107,7 +107,7 @@ class Section:
         )
 
     def _facts(self, row: Judged) -> dict[str, str]:
-        """What is printed and what is so instead."""
+        """Return the printed content and what is true instead."""
         right = correction(row)
         derived = _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else Markup()
         printed = Markup() if row.kind == "claim" else self._printed(row)
@@ -124,17 +124,17 @@ class Section:
         }
 
     def _beside(self, row: Judged, printed: Markup, right: Markup) -> Markup:
-        """What is printed, what is derived, and what differs, beside one another."""
+        """Return the printed content, the derived one, and their difference, side by side."""
         head = tag("tr", *(tag("th", self._word(key), scope="col") for key in ("printed", "right", "difference")))
         said = tag("td", *_formulas(self._review.fact(row)))
         return tag("table", tag("thead", head), tag("tbody", tag("tr", tag("td", printed), tag("td", right), said)))
 
     def _about(self, row: Judged) -> Markup:
-        """What a row is about, marked as English on a page in another language if it is."""
+        """Return the subject of a row, marked as English on a page in another language if it is."""
         return tag("span", row.says, lang=False if self._review.translated(row) else "en")
 
     def _sources(self, key: str) -> dict[str, str]:
-        """Links to what a row follows from, and to what it is held against."""
+        """Return links to the sources of a row, and to the expressions it is compared with."""
         row = self._read[key]
         against = [tag("a", breakable(address), href=f"#{slug(address)}") for address in addresses(row)]
         named = dict.fromkeys([*row.uses, *(row.claims.rows if row.claims else ())])
@@ -167,18 +167,18 @@ class Section:
         )
 
     def _code(self, row: Judged, evidence: str) -> Markup:
-        """What a claim was tested as and what was measured, for readers of code, who open it."""
+        """Return the proposition that was tested and the measured values as code, folded away."""
         tested = self._printed(row) if row.kind == "claim" else Markup()
         if not tested and (row.by_formula or not evidence):
             return Markup()
         return tag("details", tag("summary", self._word("claims")), tested, tag("code", evidence), class_="code")
 
     def _original(self, row: Judged) -> Markup:
-        """The document's own words."""
+        """Return the document's own words."""
         return tag("q", row.original, lang=self._language) if row.original else Markup()
 
     def _printed(self, row: Judged) -> Markup:
-        """What is printed: mathematics, lines of a program, a table, or a proposition."""
+        """Return the printed content: mathematics, program lines, a table, or a proposition."""
         formula = self._review.formulas.get(row.key)
         if formula is None and row.kind == "table" and not isinstance(row.printed, str):
             lines = [[line] if isinstance(line, str) else line for line in row.printed]
@@ -188,7 +188,7 @@ class Section:
         return _formula(formula, "\n".join(map(flat, row.printed)))
 
     def _sentence(self, text: str) -> Markup:
-        """A sentence of the summary: what it quotes in its own language, findings that it numbers as links."""
+        """Return a sentence of the summary, with quotes in their own language and findings as links."""
         quotes = {f'"{row.original}"': row.original for row in self._review.rows if row.original}
         pattern = "|".join(map(re.escape, sorted(quotes, key=len, reverse=True))) or "(?!)"
         pieces = []
@@ -218,26 +218,26 @@ class Section:
 
 
 def _formula(formula: formula_tex.Printed | None, text: str) -> Markup:
-    """A formula typeset, anything else as it stands."""
+    """Return a formula as mathematics, any other content as text."""
     if formula is not None:
         return scrolled(math(formula_tex.formula(formula), block=True))
     return tag("pre", tag("code", text)) if "\n" in text else tag("code", text)
 
 
 def scrolled(formula: Markup) -> Markup:
-    """What may be wider than the page."""
+    """Return a formula that may be wider than the page, with a scroll bar."""
     return tag("div", formula, class_="wide")
 
 
 def _formulas(text: str) -> Iterator[Markup]:
-    """A sentence whose formulas, between backquotes, are typeset."""
+    """Return a sentence whose formulas, between backquotes, are typeset."""
     for k, piece in enumerate(_CODE.split(text)):
         tex = formula_tex.inline(piece) if k % 2 else None
         yield math(tex) if tex else tag("code", piece) if k % 2 else joined(piece)
 
 
 def _anchors(keys: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Each key with a name of its own that an address may end with."""
+    """Map each key to a unique anchor."""
     taken: set[str] = set()
     for key in keys:
         name = base = slug(key)
@@ -250,24 +250,24 @@ def _anchors(keys: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def breakable(address: str) -> Markup:
-    """An address that a line may end in after its signs."""
+    """Return an address that may be broken across lines after its signs."""
     return joined(*re.split(r"(?<=[:._])", address), by="<wbr>")
 
 
 def slug(text: str) -> str:
-    """A text as a name that addresses may end with."""
+    """Return a text in the form of an anchor."""
     return re.sub(r"[^A-Za-z0-9_.:]+", "-", text).strip("-") or "-"
 
 
 class Derived(msgspec.Struct, frozen=True):
-    """A derived thing: the title of its derivation, and its LaTeX."""
+    """A derived expression: the title of its derivation, and its LaTeX."""
 
     title: str
     tex: str
 
 
 def addresses(row: Row) -> list[str]:
-    """Addresses of what a row is held against."""
+    """Return the addresses of the expressions that a row is compared with."""
     if isinstance(row.holds, Text):
         return [row.holds.value]
     named = [call.arguments[0] for call in calls_in(row.holds) if call.function == "at"]
@@ -275,7 +275,7 @@ def addresses(row: Row) -> list[str]:
 
 
 def typeset(wanted: Iterable[str], announce: Callable[[str], None] = lambda _: None) -> dict[str, Derived]:
-    """What addresses name, in their order."""
+    """Typeset the expressions at some addresses, in their order."""
     path = user_cache.folder("audit") / f"derived-{cache.program((__name__,))}.json"
     try:
         known = msgspec.json.decode(user_cache.read(path), type=dict[str, Derived])
@@ -301,7 +301,7 @@ def _typeset(address: str, announce: Callable[[str], None]) -> Derived:
 
 
 def _of_record(address: str) -> Derived:
-    """An equation of a model whose file is not executed."""
+    """Return a recorded equation of a model whose file is not executed."""
     record_ = shelf.find(address.partition(":")[0])
     write = in_latex({name: entry.latex for name, entry in record_.names.items() if entry.latex})
     found = record.look_up(record_, address)

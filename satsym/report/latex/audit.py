@@ -1,4 +1,4 @@
-"""A referee's report on documents, in LaTeX: what falls and what stands, then findings by their weight."""
+"""A referee's report on documents, in LaTeX: conclusions first, then findings by their weight."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from satsym.report.texts import Texts, load
 _CODE = re.compile(r"`([^`]*)`")
 _LONGEST_WORD = 12
 _BAR, _COLOURS = 12.0, ("green!45!black", "red!70!black", "black!30")
-"""The width of a bar in em, and the colours of what stands, falls and is open."""
+"""The width of a bar in em, and the colours of right, wrong and open rows."""
 _COLUMN = 0.3 * formula_tex.WIDEST
 """Width of one column of three, in em of the main font."""
 _MACROS = r"""\usepackage{graphicx}
@@ -46,7 +46,7 @@ _MACROS = r"""\usepackage{graphicx}
 def render(
     ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], language: str = "en", code: bool = False
 ) -> str:
-    """A document with a section for each ledger.
+    """Return a document with a section for each ledger.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def render(
 
 
 def _legend(texts: Texts, reviews: Sequence[Review]) -> Iterator[str]:
-    """What verdicts and weights mean, and how many rows of which document have each verdict."""
+    """Return the meaning of verdicts and weights, and the number of rows of each document with each verdict."""
     yield rf"\section*{{{escape(texts.get('audit', 'legend'))}}}"
     head = " & ".join([escape(texts.get("audit", "verdict")), *(name(review.key) for review in reviews)])
     lines = [
@@ -117,7 +117,7 @@ def _section(review: Review, code: bool) -> Iterator[str]:
 
 
 def _chart(review: Review) -> str:
-    """How much of each kind stands, falls and is open, as bars."""
+    """Return bars of how many rows of each kind are right, wrong and open."""
     names = [review.texts.get("audit", key) for key in ("stands", "falls_here", "open_here")]
     lines = []
     for kind, *counts in review.chart:
@@ -199,20 +199,20 @@ def _fact(texts: Texts, key: str, text: str) -> str:
 
 
 def _printed(formula: formula_tex.Printed | None, text: str) -> str:
-    """A formula typeset, anything else in typewriter."""
+    """Typeset a formula as mathematics, any other content in typewriter."""
     if formula is None:
         return _typewriter(text) if text else ""
     return r" \newline\quad ".join(map(_fitted, formula_tex.lines(formula)))
 
 
 def _fitted(tex: str) -> str:
-    """Mathematics, made smaller where it is wider than the column."""
+    """Typeset mathematics, reduced in size where it is wider than the column."""
     plain = rf"$\displaystyle {tex}$"
     return plain if width(tex) <= formula_tex.WIDEST else rf"\resizebox{{\linewidth}}{{!}}{{{plain}}}"
 
 
 def _sentence(text: str) -> str:
-    r"""A sentence whose formulas, between backquotes, are typeset."""
+    r"""Typeset a sentence whose formulas are between backquotes."""
     pieces = _CODE.split(text)
     return "".join(_breakable(piece) if k % 2 == 0 else _inline(piece) for k, piece in enumerate(pieces))
 
@@ -223,13 +223,13 @@ def _inline(text: str) -> str:
 
 
 def _typewriter(text: str) -> str:
-    """Text as it is typed, with straight quotes."""
+    """Typeset text as it is typed, with straight quotes."""
     straight = _breakable(text).replace("'", r"\textquotesingle{}")
     return rf"\texttt{{{straight}}}"
 
 
 def _breakable(text: str) -> str:
-    """Escaped text whose long words may be broken at signs."""
+    """Return escaped text whose long words may be broken at signs."""
     words = []
     for word in text.split():
         escaped = escape(word)

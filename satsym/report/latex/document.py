@@ -1,7 +1,7 @@
-"""A derivation as a LaTeX document: what it starts from, then every step with its rule and its equations.
+"""A derivation as a LaTeX document: the statement of the problem, then every step with its rule and its equations.
 
-The sentences are those of :mod:`satsym.report.texts`; every equation is printed from the derivation's own
-objects, and carries its address as its label.
+The sentences are those of :mod:`satsym.report.texts`; every equation is printed from the derivation's own objects, and
+carries its address as its label.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from satsym.symbolic.principle.path.interior import named
 from satsym.symbolic.principle.path.notation import holds_controls
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
-"""Steps that begin a new section."""
+"""Steps that begin a section, with the keys of the sections."""
 
 _NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*")
-"""At the foot of a symbol: what the model calls a part of it, or the first word of that."""
+"""A subscript that is the model's name of a part, or the first word of it."""
 
 
 OF_TIME = ("openings", "boundary_value", "statement", "rules", "groups", "boundary", "conclusions", "claims")
-"""Tables of texts in whose formulas time may stand."""
+"""Tables of texts whose formulas may contain time."""
 OF_OLD_TIME = ("new units",)
 _FORMULA = re.compile(r"\$[^$]*\$|\\\[.*?\\\]")
 _TIME = re.compile(r"(?<![A-Za-z\\])t(?![A-Za-z])")
@@ -90,7 +90,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
 
 
 def in_language(derivation: Derivation, language: str) -> Texts:
-    """The texts of a language, with what the model brings: its kind's sentences, its own words."""
+    """Return the texts of a language, with the sentences and words that the model adds."""
     model = derivation.model
     texts = load(language).with_own({**model.sentences().get(language, {}), PHRASES: translated(model, language)})
     time = derivation.notation[TIME.name]
@@ -98,7 +98,7 @@ def in_language(derivation: Derivation, language: str) -> Texts:
 
 
 def _timed(table: Mapping[str, str], letter: str) -> dict[str, str]:
-    """Texts in whose formulas time has another letter, but for those of the old time."""
+    """Return texts in whose formulas time has another letter, except those about the old time."""
     return {
         key: text if key in OF_OLD_TIME else _FORMULA.sub(lambda found: _TIME.sub(lambda _: letter, found[0]), text)
         for key, text in table.items()
@@ -117,12 +117,12 @@ class _Composer:
         self._sections = [kind, "motion", *starts, *(["boundary_value"] if derivation.problem else [])]
 
     def abstract(self) -> str:
-        """What each section does."""
+        """Write what each section does."""
         places = {self._examined(key): self._place(key) for key in (*self._sections, "checks")}
         return " ".join(self._texts.get("abstract", key, section=place) for key, place in places.items())
 
     def _examined(self, section: str) -> str:
-        """The key of what a section is said to do: that on structure may be about less."""
+        """Return the key of a section's summary; the one on structure may cover less."""
         if section == "motion":
             first = self._derivation.steps[0]
             return "motion, stated" if (first.name, first.rule) == ("first_order", "given") else section
@@ -130,7 +130,7 @@ class _Composer:
         return section if section != "structure" or len(examined) == 2 else "".join(examined) or "stability"
 
     def paragraphs(self) -> list[str]:
-        """Everything from the statement to what it leads to."""
+        """Write everything from the statement to the results."""
         done = [self._section(self._sections[0]), *self._declared.paragraphs]
         done.append(self._section("motion"))
         for step in self._derivation.steps:
@@ -142,7 +142,7 @@ class _Composer:
         return done
 
     def appendices(self) -> str:
-        """How all steps were checked, and equations that are too many for the place of their step."""
+        """Write the checks of all steps, and equations that are too many for the place of their step."""
         listed = f"{self._section('checks')}\n{rules.listed(self._derivation, self._texts)}"
         apart = "\n".join(one.appendix for one in self._shown.values() if one.appendix)
         if not apart:
@@ -158,14 +158,14 @@ class _Composer:
         return rf"\section{{{self._texts.get('sections', heading)}}}\label{{{self._place(key)}}}"
 
     def _opening(self, key: str) -> Iterator[str]:
-        """The head of a section, and what it builds on."""
+        """Write the heading of a section, and the sections that it uses."""
         problem = self._derivation.problem
         yield self._section(key)
         opening = "stability" if self._examined(key) == "stability" else key
         yield self._texts.get("openings", worded(opening, problem) if problem else opening)
 
     def _step(self, step: Step) -> str:
-        """Heading, rule, equations, what they come to; the sources are the steps before this one."""
+        """Write a step: heading, rule, equations and conclusions; its sources are earlier steps."""
         title = self._title(step)
         stated = rule(self._context, step, self._sources(step))
         self._shown[step.name] = shown(self._context, step)
@@ -174,13 +174,13 @@ class _Composer:
         return "\n".join((heading, stated, self._shown[step.name].body, *self._while(step), *further))
 
     def _title(self, step: Step) -> str:
-        """The title of a step, in its form for a single control where there is one."""
+        """Return the title of a step, in its form for a single control where there is one."""
         alone = len(self._derivation.model.controls) == 1
         found = self._texts.find("titles", f"{step.name}, one control") if alone else None
         return found or self._texts.get("titles", step.name)
 
     def _while(self, step: Step) -> list[str]:
-        """What is said of a step that leaves path constraints out."""
+        """Write the remark on a step that leaves path constraints out."""
         problem = self._derivation.problem
         if problem is None or not problem.path_constraints:
             return []
@@ -193,7 +193,7 @@ class _Composer:
         return listed_sources(self._texts, {name: self._source(name) for name in step.follows_from})
 
     def _source(self, name: str) -> str:
-        """A step that was shown, or else a declared thing, in words and with its numbers."""
+        """Name a source of a step, a shown step or a declaration, with its equation numbers."""
         if name in self._shown:
             first, last = tex.label(self._shown[name].first), tex.label(self._shown[name].last)
             step = tex.label(f"{self._derivation.name}:{name}")
@@ -208,15 +208,15 @@ ON_BOUNDARY = (
     *("boundary_control", "control_rates", "constraint_multiplier", "constrained_costates", "junction_conditions"),
     *("mixed_constraints", "mixed_costates"),
 )
-"""Steps for stretches on which a path constraint is active."""
+"""Steps on arcs on which a path constraint is active."""
 SINGULAR = ("singular_arcs", "generalised_legendre_clebsch")
-"""Steps that say what is known of singular arcs."""
+"""Steps on singular arcs."""
 DEFINING = ("switching_function", "control_parts")
-"""Steps that define what control laws are stated in."""
+"""Steps that define the symbols of control laws."""
 
 
 def collected(context: Context) -> Iterator[str]:
-    """Paragraphs: what holds along the trajectory, at its start and at its end."""
+    """Write the conditions along the trajectory, at its start and at its end."""
     derivation, texts = context.derivation, context.texts
     problem = derivation.problem
     assert problem is not None
@@ -264,7 +264,7 @@ def collected(context: Context) -> Iterator[str]:
 
 
 def _parts(context: Context, law: Step) -> list[Row]:
-    """What the law is stated in: switching functions, or the parts of H, as far as they stand in it."""
+    """Return the step whose symbols the law contains: switching functions, or the parts of H."""
     derivation = context.derivation
     within = set[Any]().union(*(e.rhs.free_symbols for e in law.equations))
     steps = [derivation.step(name) for name in DEFINING if name in derivation]
@@ -272,7 +272,7 @@ def _parts(context: Context, law: Step) -> list[Row]:
 
 
 def _singular(context: Context) -> str:
-    """The step that states controls on singular arcs, where there may be such arcs that are optimal."""
+    """Return the step that states controls on singular arcs, if such arcs may be optimal."""
     derivation = context.derivation
     found = [step for name in SINGULAR if name in derivation for step in (derivation.step(name),)]
     keys = [c.key.partition(",")[0] for step in found for c in step.conclusions]
@@ -281,12 +281,12 @@ def _singular(context: Context) -> str:
 
 
 def _constrained(problem: Problem) -> bool:
-    """Whether there is a path constraint; bounds beside points on the way are in the law."""
+    """Tell whether there is a path constraint; bounds beside points on the way are part of the law."""
     return bool(problem.path_constraints)
 
 
 def _passing(context: Context, step: Step) -> list[Row]:
-    """The conditions at points on the way, as they are stated, and what they make of costates and H."""
+    """Write the conditions at points on the way, and their effects on costates and H."""
     problem = context.derivation.problem
     assert problem is not None
     stated = set(named(problem))
@@ -294,7 +294,7 @@ def _passing(context: Context, step: Step) -> list[Row]:
 
 
 def _at(context: Context, step: Step, time: str, names: list[str]) -> list[Row]:
-    """The equations of those names, at a time."""
+    """Write the equations with some names, at a time."""
     typeset = context.typeset.at(time)
     return [row_of(context, step, e, typeset=typeset) for e in step.equations if e.name in names]
 

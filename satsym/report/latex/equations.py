@@ -1,7 +1,7 @@
 """Numbered, aligned equations from signed terms, broken where they are too long for a line.
 
-How wide a formula will be in print is estimated from its LaTeX, in em of the main font. The estimate errs on the wide
-side; a test holds it against what TeX measures.
+The printed width of a formula is estimated from its LaTeX, in em of the main font. The estimate errs on the wide side;
+a test compares it with TeX's own measurement.
 """
 
 from __future__ import annotations
@@ -21,53 +21,51 @@ from satsym.symbolic.latex.typeset import Typesetter
 LINE = 35.0
 """Width in em that an equation may take beside its number: 160 mm of 11-point type."""
 INDENT = 1.0
-"""What a continued line is moved in by, in em; twice that within parentheses."""
+"""Indent of a continued line in em, doubled within parentheses."""
 
 ROW_PLAIN, ROW_SMALL_FRACTIONS, ROW_ONE_FRACTION, ROW_FRACTIONS = (
     r" \\ " + (rf"\noalign{{\vskip {gap}pt}} " if gap else "") for gap in (0, 2, 5, 10)
 )
-"""What parts rows of a matrix: both without fractions, one with, both with; where fractions are small, one step less.
-
-What stands below the line of one fraction is not to be read as part of the one in the next row.
-"""
+"""Space between rows of a matrix: both without fractions, one with, both with; one step less where fractions are small.
+The denominator in one row must not seem to belong to the next row."""
 TALL = 4
-"""Lines of one equation that are kept on one page, at most."""
+"""Largest number of lines of one equation that are kept on one page."""
 TOGETHER = 3
-"""Lines of the longest group of equations that no page may break."""
+"""Largest number of lines of a group of equations that is kept on one page."""
 FEWEST = 2
-"""Lines of a group of equations that a page must have, at least."""
+"""Least number of lines of a group of equations on a page."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One numbered equation."""
+    """A numbered equation in print."""
 
     address: str
-    """Its label."""
+    """Label of the equation."""
     left: tuple[Term, ...]
     right: tuple[Term, ...]
-    """Terms of both sides."""
+    """Terms of the left and of the right side."""
     also: str = ""
-    """Something the left side also equals, written between both sides."""
+    """A further expression that equals the left side, printed between both sides."""
     end: str = ""
-    """What both sides also are, with its relation: ``= 0``, written at the end."""
+    """A further relation at the end, such as ``= 0``."""
     again: bool = False
-    """Whether it was shown before, and bears the number that it has there."""
+    """Whether the equation was shown before, and has the number of that place."""
 
     @property
     def left_tex(self) -> str:
-        """The left side on one line."""
+        """Return the left side on one line."""
         return joined(self.left) + (f" = {self.also}" if self.also else "")
 
     @property
     def tag(self) -> str:
-        """The command that labels it."""
+        """Return the command that labels the equation."""
         address = label(self.address)
         return rf"\tag{{\ref{{{address}}}}}" if self.again else rf"\label{{{address}}}"
 
 
 def array(cells: Sequence[Sequence[str]]) -> str:
-    """A matrix; one row has commas, and one entry alone stands without parentheses."""
+    """Return a matrix; one row has commas, and a single entry has no parentheses."""
     if len(cells) == 1:
         listed = r",\; ".join(cells[0])
         return listed if len(cells[0]) == 1 else rf"\left({listed}\right)"
@@ -78,12 +76,12 @@ def array(cells: Sequence[Sequence[str]]) -> str:
 
 
 def also(back: int, addresses: Sequence[str]) -> str:
-    """Labels for what shares the number of an equation, counted back from the last one."""
+    """Return further labels for an equation number, counted back from the last one."""
     return rf"\satsymalso{{{back}}}{{{','.join(map(label, addresses))}}}%" if addresses else ""
 
 
 def _between(above: str, below: str) -> str:
-    """What parts two rows of a matrix."""
+    """Return what separates two rows of a matrix."""
     for fraction, both, one in (
         (r"\frac", ROW_FRACTIONS, ROW_ONE_FRACTION),
         (r"\tfrac", ROW_ONE_FRACTION, ROW_SMALL_FRACTIONS),
@@ -96,7 +94,7 @@ def _between(above: str, below: str) -> str:
 
 
 def display(rows: Sequence[Row], line: float = LINE) -> str:
-    """The equations, aligned at their equals signs, in as many environments as their widths ask for.
+    """Write equations, aligned at their equals signs, in as many environments as their widths need.
 
     Parameters
     ----------
@@ -113,7 +111,7 @@ def display(rows: Sequence[Row], line: float = LINE) -> str:
 
 
 def broken(terms: Sequence[Term], limit: float) -> list[str]:
-    """A sum on as few lines as fit the limit, of like lengths; lines after the first begin with their indent."""
+    """Break a sum into as few lines as fit the limit, of similar lengths; later lines begin with their indent."""
     pieces: list[Piece] = []
     for place, term in enumerate(terms):
         whole = term.signed(first=place == 0)
@@ -128,7 +126,7 @@ def broken(terms: Sequence[Term], limit: float) -> list[str]:
 
 
 def _best_breaks(pieces: Sequence[Piece], limit: float) -> list[int]:
-    """Where lines begin: the fewest lines, then the most even ones, rather outside parentheses than inside."""
+    """Return where lines begin: with the fewest lines, then the most even ones, preferably outside parentheses."""
     widths = [width(p.tex) for p in pieces]
     best: list[tuple[tuple[int, float], list[int]]] = [((0, 0.0), [])]
     for end in range(1, len(pieces) + 1):
@@ -169,7 +167,7 @@ def _block(rows: list[Row], line: float) -> str:
 
 
 def _on_lines(lines: Sequence[str]) -> str:
-    """One side of an equation; where it has more lines than are kept together, a page takes a few of them at least."""
+    """Write one side of an equation; where it has many lines, page breaks leave a few of them together."""
     if len(lines) <= TALL:
         return " \\\\\n  &".join(lines)
     apart = (FEWEST <= k <= len(lines) - FEWEST for k in range(1, len(lines)))
@@ -178,7 +176,7 @@ def _on_lines(lines: Sequence[str]) -> str:
 
 
 def _both_sides_broken(row: Row, line: float) -> str:
-    """A long left side above the right one."""
+    """Write an equation with a long left side above the right one."""
     left = broken(row.left, line)
     right = broken(row.right, line - 2 * INDENT - 1.3)
     lines = [f"&{line}" for line in left] + [rf"&\qquad = {right[0]}"] + [rf"&\qquad\quad {line}" for line in right[1:]]
@@ -197,7 +195,7 @@ def _environment(name: str, lines: Sequence[str]) -> str:
 
 
 SCRIPT = 0.82
-"""Size of sub- and superscripts."""
+"""Size of sub- and superscripts, relative to the main font."""
 
 _TOKEN = re.compile(r"\\[A-Za-z]+\*?|\\.|.", re.DOTALL)
 _ACCENTS = frozenset(rf"\{name}" for name in "dot ddot dddot hat bar tilde vec check breve".split())
@@ -214,7 +212,7 @@ _CHARACTERS = {"+": 1.23, "-": 1.23, "=": 1.34, "(": 0.39, ")": 0.39, ",": 0.45,
 
 
 def width(tex: str) -> float:
-    """Estimated width of a formula in display style."""
+    """Estimate the width of a formula in display style."""
     return _Reader(tex).sequence()
 
 
@@ -224,7 +222,7 @@ class _Reader:
         self._next = 0
 
     def sequence(self, closing: str = "") -> float:
-        """Width up to the closing token, or to the end."""
+        """Return the width up to the closing token, or to the end."""
         total = 0.0
         while self._next < len(self._tokens):
             if self._tokens[self._next] == closing:
@@ -257,7 +255,7 @@ class _Reader:
         return _CHARACTERS.get(token, 0.76 if token.isupper() else 0.56)
 
     def _scripts(self, first: str) -> float:
-        """Sub- and superscript of one nucleus stand above each other."""
+        """Return the width of sub- and superscript of one nucleus, which are above each other."""
         widest = SCRIPT * self._argument()
         if self._next < len(self._tokens) and self._tokens[self._next] in "_^" and self._tokens[self._next] != first:
             self._take()
@@ -277,40 +275,40 @@ class _Reader:
 
 @dataclass(frozen=True)
 class Context:
-    """What typesetting a step needs besides the step."""
+    """The derivation, texts and notation that typesetting a step needs besides the step."""
 
     derivation: Derivation
     texts: Texts
     typeset: Typesetter
 
     def address(self, step: Step) -> str:
-        """The address of a step."""
+        """Return the address of a step."""
         return f"{self.derivation.name}:{step.name}"
 
     def costates(self) -> list[str]:
-        """Names of the costates, in the order of the states."""
+        """Return the names of the costates, in the order of the states."""
         return [self.typeset.costate(v.symbol) for v in self.derivation.model.states]
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A step's equations in LaTeX, and the addresses of the first and the last that got numbers of their own."""
+    """A step's equations in LaTeX, and the addresses of its first and last numbered equation."""
 
     body: str
     first: str
     last: str
     appendix: str = ""
-    """Equations that are too many for the place of the step, if there are such."""
+    """Equations that are too many for the place of the step; empty if there are none."""
 
 
 def numbers_of(first: str, last: str) -> str:
-    """The equation number of an address, or the range of two."""
+    """Refer to the equation number of an address, or to the range of two."""
     ends = dict.fromkeys((tex.label(first), tex.label(last)))
     return r"\mbox{--}".join(rf"\eqref{{{label}}}" for label in ends)
 
 
 def row_of(context: Context, step: Step, equation: Equation, also: str = "", typeset: Typesetter | None = None) -> Row:
-    """An equation as it stands, or in the notation of another typesetter."""
+    """Return an equation as a row, in the notation of a typesetter."""
     typeset = typeset or context.typeset
     left, right = typeset.terms(equation.lhs), typeset.terms(equation.rhs)
     return Row(f"{context.address(step)}.{equation.name}", left, right, also)

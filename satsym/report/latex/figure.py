@@ -16,16 +16,16 @@ SIZE = 2.6
 """Distance of the body from the centre, in cm."""
 
 WIDE, HIGH = 3.2, 2.2
-"""Where the switching curve ends in a phase plane, in cm from the target."""
+"""Ends of the switching curve in a phase plane, in cm from the target."""
 
 COVERING = "fill=white,inner sep=1pt,outer sep=3pt"
-"""A name that covers the lines below it."""
+"""TikZ options of a name that covers the lines below it."""
 
 _WORD = re.compile(r"\\text\{([^}]*)\}")
 
 
 def figure(model: Model, texts: Texts, label: str) -> str:
-    """A sentence that leads to a figure, which has a caption; empty for a model without a geometry that is drawn."""
+    """Return a sentence and the figure of a model's geometry, with a caption; empty without a drawable geometry."""
     found = model.picture()
     if found is None:
         return ""
@@ -56,7 +56,7 @@ def _floating(lines: Iterator[str], caption: str, texts: Texts, label: str) -> s
 
 
 def _phase_plane(shown: PhasePlane, named: Callable[[str], str]) -> Iterator[str]:
-    """Axes, trajectories, the curve over them, and on either side of it the bound that applies."""
+    """Draw axes, trajectories, the switching curve, and on either side of it the bound that applies."""
     far = max(abs(q) for q, _ in shown.curve)
     high = max(abs(v) for _, v in shown.curve)
 
@@ -82,7 +82,7 @@ def _phase_plane(shown: PhasePlane, named: Callable[[str], str]) -> Iterator[str
 
 
 def _space(shown: Picture) -> Iterator[str]:
-    """Inertial axes, the reference, and arrows with their names."""
+    """Draw inertial axes, the reference, and arrows with their names."""
     first, *others = shown.arrows
     scale = SIZE / hypot(*first.end)
     far = 1.25 * SIZE
@@ -109,7 +109,7 @@ def _space(shown: Picture) -> Iterator[str]:
 
 
 def _bodies(shown: Picture) -> Iterator[str]:
-    """Concentric bodies, each with the sense of its turn, and the angle from its reference direction."""
+    """Draw concentric bodies, each with the sense of its turn, and the angle from its reference direction."""
     for k, name in enumerate(shown.bodies):
         radius = SIZE * (len(shown.bodies) - k) / (len(shown.bodies) + 0.5)
         yield rf"\draw (0,0) circle ({radius:.2f})"
@@ -125,7 +125,7 @@ def _bodies(shown: Picture) -> Iterator[str]:
 
 
 def _attitude(shown: Picture) -> Iterator[str]:
-    """Axes of the orbit, those of the body, and the sense of each angle."""
+    """Draw axes of the orbit, those of the body, and the sense of each angle."""
     far = 1.3 * SIZE
     for k, arrow in enumerate(shown.arrows):
         look, along = (",black!50", 1.3) if k < 3 else (",thick", 0.95)
@@ -158,7 +158,7 @@ def _names(arrow: Arrow) -> str:
 
 
 def _side(arrow: Arrow, beside: str) -> str:
-    """Where the name of an arrow stands: on from its head, or beside one that points back to the centre."""
+    """Return the side of an arrow's name: beyond its head, or beside an arrow that points back to the centre."""
     x, y = (b - a for a, b in zip(arrow.start, arrow.end, strict=True))
     if x * arrow.start[0] + y * arrow.start[1] < 0 and abs(x * arrow.start[1] - y * arrow.start[0]) < 1e-6:
         return beside

@@ -1,4 +1,4 @@
-"""Printed formulas in LaTeX: their own symbols, as a hand would write them, broken where they are wide."""
+"""Printed formulas in LaTeX, in their own symbols and usual handwritten form, broken where they are wide."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SUM, _PRODUCT, _ATOM = range(3)
 
 
 def formula(tree: Printed) -> str:
-    """A formula or a matrix on one line."""
+    """Typeset a formula or a matrix on one line."""
     if isinstance(tree, tuple):
         return matrix(tree)
     if isinstance(tree, Equality):
@@ -43,7 +43,7 @@ def formula(tree: Printed) -> str:
 
 
 def lines(tree: Printed) -> list[str]:
-    """A formula on as many lines as its width asks for; a sum is broken between its terms."""
+    """Typeset a formula on as many lines as its width needs; a sum is broken between its terms."""
     whole = formula(tree)
     right = tree.rhs if isinstance(tree, Equality) else tree
     if width(whole) <= WIDEST or not isinstance(right, Add):
@@ -58,13 +58,13 @@ def lines(tree: Printed) -> list[str]:
 
 
 def matrix(entries: Sequence[Sequence[Node]]) -> str:
-    """A matrix."""
+    """Typeset a matrix."""
     rows = " \\\\ ".join(" & ".join(map(formula, row)) for row in entries)
     return f"\\begin{{pmatrix}} {rows} \\end{{pmatrix}}"
 
 
 def read(text: str) -> Printed | None:
-    """The formula or matrix that a text is; ``None`` where it is none."""
+    """Return the formula or matrix in a text; ``None`` where the text is none."""
     try:
         tree = reading.statement(text, judging=text.startswith("["))
     except BadInput:
@@ -75,19 +75,19 @@ def read(text: str) -> Printed | None:
 
 
 def inline(text: str) -> str | None:
-    """A formula in a sentence, which may be a term with its sign; ``None`` where a text is none."""
+    """Typeset a formula in a sentence, possibly a term with its sign; ``None`` where a text is none."""
     found = read(text.removeprefix("+"))
     return None if found is None else f"{'+' if text.startswith('+') else ''}{formula(found)}"
 
 
 def symbol(name: str) -> str:
-    """How a name is typeset: ``x1`` has an index, ``d_x1`` and ``r_dot`` a dot, ``lambda`` is a letter."""
+    """Typeset a name: ``x1`` has an index, ``d_x1`` and ``r_dot`` a dot, ``lambda`` is a letter."""
     letter, index, star = _parts(name)
     return f"{letter}{f'_{{{index}}}' if index else ''}{star}"
 
 
 def _parts(name: str) -> tuple[str, str, str]:
-    """Letter with its accents, index and star."""
+    """Split a name into letter with accents, index and star."""
     if name.startswith("d_") and len(name) > 2:
         letter, index, star = _parts(name[2:])
         return rf"\dot{{{letter}}}", index, star
@@ -122,7 +122,7 @@ def _signed(term: Node, first: bool) -> str:
 
 
 def _tex(node: Node) -> tuple[str, int]:
-    """The LaTeX of a node, and how tightly it binds."""
+    """Return the LaTeX of a node, and its binding strength."""
     if isinstance(node, Num):
         return written(node) if node.value.denominator == 1 or "/" not in written(node) else _fraction(node), _ATOM
     if isinstance(node, Sym):

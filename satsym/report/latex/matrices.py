@@ -1,4 +1,4 @@
-"""Matrices as matrices: long entries get names and follow below, and a matrix too wide even so becomes a list."""
+"""Matrices in LaTeX: long entries get names and follow below; a matrix that is still too wide becomes a list."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ DEFINED = {
     "D": r"D = \frac{\partial\mathbf{g}}{\partial\mathbf{u}}",
     "H": r"H_{\mathbf{uu}} = \frac{\partial^2 H}{\partial\mathbf{u}^2}",
 }
-"""What a matrix stands for, by the prefix that the names of its entries have."""
+"""Definitions of matrices, by the prefix of the names of their entries."""
 TALL = 14
-"""Lines of a matrix, at most; a row with fractions counts as two."""
+"""Largest number of lines of a matrix; a row with fractions counts as two."""
 GAP = 1.0
-"""Between columns, in em."""
+"""Space between columns, in em."""
 
 _LETTER = re.compile(r"(?:\\[a-z]+\{)?[A-Za-z]\}?")
 
@@ -34,7 +34,7 @@ _LETTER = re.compile(r"(?:\\[a-z]+\{)?[A-Za-z]\}?")
 def with_matrices(
     derivation: Derivation, step: Step, texts: Texts, typeset: Typesetter
 ) -> tuple[str, list[str]] | None:
-    """Typeset, as matrices, the equations of a step that define entries of matrices; and list those with own numbers.
+    """Typeset equations that define the entries of matrices as matrices, and list those with numbers.
 
     ``None`` if there are no matrices. Entries without a number of their own share that of their matrix.
     """
@@ -76,7 +76,7 @@ def with_matrices(
 
 
 def _entry_letter(matrix: str, derivation: Derivation) -> str:
-    """The letter of entries of a matrix: its own as a small one, unless it has an index for something else."""
+    """Return the letter of a matrix's entries: its own in lower case, unless variables are indexed by that."""
     sides = (side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs))
     names: set[str] = set().union(*({s.name for s in side.free_symbols} for side in sides))
     indexed = [latex for name in names if "_" in (latex := derivation.notation.get(name, ""))]
@@ -84,25 +84,25 @@ def _entry_letter(matrix: str, derivation: Derivation) -> str:
 
 
 def _defined(controls: Sequence[str]) -> dict[str, str]:
-    """What matrices stand for; by a single control H has no matrix of second derivatives."""
+    """Return what matrices stand for; for a single control H has no matrix of second derivatives."""
     if len(controls) != 1:
         return DEFINED
     return {**DEFINED, "H": rf"\frac{{\partial^2 H}}{{\partial {{{controls[0]}}}^2}}"}
 
 
 def entries_are(texts: Texts, matrix: str, named: int, stated: int) -> str:
-    """What introduces entries of a matrix that it shows by name, of all that are not zero."""
+    """Introduce the entries that a matrix shows by name, if they are not zero."""
     key = "entries_all" if 1 < named == stated else "entries_one" if named == 1 else "entries"
     return texts.get("groups", key, matrix=matrix)
 
 
 def _flat(tex: str) -> str:
-    """With fractions on one line."""
+    """Return LaTeX with fractions on one line."""
     return re.sub(r"\\frac\{(\S+)\}\{(\S+)\}", r"\1 / \2", tex)
 
 
 def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tuple[list[Row], list[Row]]:
-    """An equation whose right-hand side is a matrix, and those that its long entries need, or all of its entries."""
+    """Return an equation whose right-hand side is a matrix, with those of its long entries, or of all."""
     cells = [[typeset.tex(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
     head, _, _ = name.partition(" = ")
     letter = head[0].lower() if head[:1].isalpha() and head[1:2] in ("", "^") else "m"
@@ -123,7 +123,7 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
 
 
 def in_parts(cells: Sequence[Sequence[str]], room: float) -> Term | None:
-    """A matrix that is too wide for a line as blocks of columns on a few lines; ``None`` if these are too many."""
+    """Write a matrix that is too wide as blocks of columns on a few lines; ``None`` if these are too many."""
     rows, columns = len(cells), len(cells[0])
     for count in range(2, TALL // rows + 2):
         size, rest = divmod(columns, count)
@@ -140,13 +140,13 @@ def in_parts(cells: Sequence[Sequence[str]], room: float) -> Term | None:
 
 
 def _open(matrix: str, *, left: bool = False, right: bool = False) -> str:
-    """A matrix without a parenthesis on one side."""
+    """Write a matrix without a parenthesis on one side."""
     matrix = matrix.replace(r"\left(", r"\left.") if left else matrix
     return matrix.replace(r"\right)", r"\right.") if right else matrix
 
 
 def is_mirrored(matrix: Any) -> bool:
-    """Whether a matrix is its own transpose; entries are simplified only where none shows that it is not."""
+    """Tell whether a matrix is symmetric; entries are simplified only where needed to decide."""
     if matrix.rows != matrix.cols:
         return False
     pairs = [(matrix[i, j], matrix[j, i]) for i in range(matrix.rows) for j in range(i)]
@@ -154,7 +154,7 @@ def is_mirrored(matrix: Any) -> bool:
 
 
 def _indexed(name: str, i: int, j: int, matrix: Any) -> str:
-    """An entry of what the name stands for; zero stays zero."""
+    """Return the symbol of a matrix entry; zero stays zero."""
     head = name.partition(" = ")[0]
     letter = head if _LETTER.fullmatch(head) else f"({head})"
     return name if name == "0" else _place(letter, i, j, matrix.shape)
@@ -163,7 +163,7 @@ def _indexed(name: str, i: int, j: int, matrix: Any) -> str:
 def fitted(
     cells: Sequence[Sequence[str]], room: float, letter: str
 ) -> tuple[list[list[str]] | None, dict[str, tuple[int, int]]]:
-    """The cells, the longest of them replaced by names until they fit, and the names; ``None`` if nothing helps."""
+    """Replace the longest cells by names until the cells fit; return both, or ``None`` if that does not help."""
     if _total(cells) <= room:
         return [list(row) for row in cells], {}
     widths = {(i, j): width(cell) for i, row in enumerate(cells) for j, cell in enumerate(row)}
@@ -195,7 +195,7 @@ def with_names(
 
 
 def _written(matrix: NamedMatrix, letter: str, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
-    """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so, or too tall."""
+    """Return the matrix, and the entries it shows by a name; ``None`` if it is still too wide, or too tall."""
     room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
     cells = [["0" if e is None else typeset.tex(e.rhs) for e in row] for row in matrix.entries]
     short, named = fitted(cells, room, letter)
@@ -206,13 +206,13 @@ def _written(matrix: NamedMatrix, letter: str, typeset: Typesetter) -> tuple[str
 
 
 def _place(letter: str, i: int, j: int, shape: tuple[int, int]) -> str:
-    """The letter with indices that stand for an entry of a matrix of this shape."""
+    """Return the letter with the indices of an entry of a matrix of this shape."""
     comma = "," if max(shape) > 9 else ""
     return f"{letter}_{{{i + 1}{comma}{j + 1}}}"
 
 
 def _places(matrix: NamedMatrix, letter: str) -> list[tuple[str, Equation]]:
-    """Entries with the letter and indices that stand for them."""
+    """Return all entries as letters with indices."""
     return [
         (_place(letter, i, j, (len(matrix.entries), len(matrix.entries[0]))), entry)
         for i, row in enumerate(matrix.entries)
@@ -229,11 +229,11 @@ COLUMN = 13.5
 """Width in em that an equation may take in one of two columns, beside its number."""
 BOLD = r"\mathbf{"
 PART = "part_"
-"""What the names of common subexpressions begin with."""
+"""The beginning of the names of common subexpressions."""
 
 
 def kinematics(context: Context, step: Step) -> Shown:
-    """The matrix that places the body, its longer entries, and the rates of the coordinates."""
+    """Write the matrix that places the body, its longer entries, and the rates of the coordinates."""
     typeset, cosines = context.typeset, context.derivation.model.direction_cosines()
     rows = {e.name: row_of(context, step, e) for e in step.equations}
     if cosines is None or not {s.name for s in cosines} <= rows.keys():
@@ -252,7 +252,7 @@ def kinematics(context: Context, step: Step) -> Shown:
 
 
 def kane(context: Context, step: Step) -> Shown:
-    """M, b and Q as matrices; entries that are too long for these, and common subexpressions, in the appendix."""
+    """Write M, b and Q as matrices, with long entries and common subexpressions in the appendix."""
     typeset, address = context.typeset, context.address(step)
     rows = {e.name: row_of(context, step, e) for e in step.equations}
     size = sum(name.startswith("bias_") for name in rows)
@@ -288,7 +288,7 @@ def kane(context: Context, step: Step) -> Shown:
 
 
 def first_order(context: Context, step: Step) -> Shown:
-    """The rates of the speeds as the solution of one equation, where they have no closed form that is shown."""
+    """Write the rates of the speeds as the solution of one equation, if no closed form is shown."""
     derivation = context.derivation
     rows = [row_of(context, step, e) for e in step.equations]
     solved = [row for row, e in zip(rows, step.equations, strict=True) if any(map(is_solved, e.rhs.free_symbols))]
@@ -303,5 +303,5 @@ def first_order(context: Context, step: Step) -> Shown:
 
 
 def in_columns(rows: Sequence[Row]) -> str:
-    """Equations in two columns."""
+    """Write equations in two columns."""
     return f"\\begin{{multicols}}{{2}}\\satsymcolumns\n{display(rows, COLUMN)}\n\\end{{multicols}}"

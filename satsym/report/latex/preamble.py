@@ -1,4 +1,4 @@
-"""What stands before a document begins: packages, one look for all pages, and the macros of steps."""
+"""The preamble of documents: packages, the layout of all pages, and the macros of steps."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import re
 from satsym.report.texts import Texts
 
 PACKAGES = "amsmath, amssymb, array, booktabs, longtable, multicol, xcolor, tikz"
-"""What a document needs that takes in the body alone."""
+"""LaTeX packages that a document needs for including the body alone."""
 
 SIZES = r"\DeclareMathSizes{10.95}{10.95}{9}{7} % an index may bear a dot"
-"""Sizes of formulas and of indices, of which the usual ones are 8 and 6."""
+"""Sizes of formulas and of indices, in place of the usual 8 and 6."""
 
 PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \ifdefined\pdfinfoomitdate % the same bytes whenever it is compiled
@@ -75,7 +75,7 @@ MACROS = r"""\makeatletter
 
 
 def preamble(texts: Texts, title: str) -> str:
-    """All up to macros, in a language, for a document of that title, which is LaTeX."""
+    """Write the preamble up to the macros, in a language, for a document with this title in LaTeX."""
     fill = {"babel": texts.get("words", "babel"), "language": texts.language, "title": title}
     own = "" if texts.language == "en" else OWN
     fill["sizes"] = SIZES
@@ -84,7 +84,7 @@ def preamble(texts: Texts, title: str) -> str:
 
 
 def macros(name: str, texts: Texts) -> str:
-    """The macros of steps, for a document of that name."""
+    """Write the macros of steps, for a document of that name."""
     return MACROS.replace("<name>", name).replace("<step>", texts.get("words", "step"))
 
 
@@ -106,14 +106,14 @@ WORKS = {
     "hughes": r"P.~C. Hughes, \emph{Spacecraft Attitude Dynamics}, Wiley, New York, 1986.",
     "kane": r"T.~R. Kane <and> D.~A. Levinson, \emph{Dynamics: Theory and Applications}, McGraw-Hill, New York, 1985.",
 }
-"""Key -> what is printed, with places for words of the language of the document."""
+"""Cited works by key, with places for words in the language of the document."""
 
 _CITED = re.compile(r"\\cite\{([^}]*)\}")
 _WORD = re.compile(r"<(\w+)>")
 
 
 def cited(body: str, name: str, texts: Texts) -> tuple[str, str]:
-    """The body with keys that are those of its document alone, and the list of what it cites, in that order."""
+    """Return the body with keys that are unique to its document, and the list of its citations in order."""
     keys = list(dict.fromkeys(key for keys in _CITED.findall(body) for key in keys.split(",")))
     works = [_WORD.sub(lambda at: texts.get("words", at[1]), WORKS[key]) for key in keys]
     items = [rf"\bibitem{{{name}:{key}}} {work}" for key, work in zip(keys, works, strict=True)]

@@ -1,4 +1,4 @@
-"""A proof as a section of a document: the theorem, its hypotheses with what was shown of each, and enclosures."""
+"""A proof as a section of a document: the theorem, its hypotheses with how each was shown, and enclosures."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from satsym.report.said import message, say, spoken
 from satsym.report.texts import Texts, load
 
 GROUP = 5
-"""Digits after which a thin space makes long numbers legible."""
+"""Number of digits between thin spaces in long numbers."""
 _NUMBER = re.compile(r"(?P<whole>-?\d+)(?:\.(?P<part>\d+))?(?:e(?P<power>[+-]?\d+))?\Z")
 
 
 def render(proof: Proof, language: str = "en", *, standalone: bool = True) -> str:
-    """LaTeX of a proof.
+    """Return the LaTeX of a proof.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def _numbered(items: list[str]) -> str:
 
 
 def _given(proof: Proof, texts: Texts) -> str:
-    """The numbers of the instance, two to a line."""
+    """Write the numbers of the instance, two to a line."""
     cells = [rf"{name(key)} & \texttt{{{escape(number)}}}" for key, number in proof.numbers.items()]
     cells += ["& "] * (len(cells) % 2)
     head = " & ".join([f"{escape(texts.get('page', 'key'))} & {escape(texts.get('page', 'value'))}"] * 2)
@@ -109,15 +109,15 @@ def _table(rows: list[tuple[str, Enclosure]], texts: Texts) -> str:
 _FORMULA = re.compile(
     r"(?P<number>\b\d+(?:\.\d+)?e[+-]?\d+\b)|(?P<start>(?<=W\(t0\) = )[^;,]+)|(?P<name>W\(t0\)|\bH_uu\b|\bH\b)"
 )
-"""Numbers with powers of ten, and the names of the theory, within sentences."""
+"""Numbers with powers of ten, and symbols of the theory, within sentences."""
 _NAMES = {"W(t0)": "W(t_0)", "H_uu": "H_{uu}", "H": "H"}
 _PLACE = "XFORMULAX"
-"""Holds the place of a formula, or of a name, while the words around it are escaped."""
+"""A placeholder for a formula, or a name, while the words around it are escaped."""
 _PAGES = re.compile(r"(?<=\d)-(?=\d)")
 
 
 def _typeset(text: str) -> str:
-    """A sentence with its formulas as such."""
+    """Typeset a sentence with its formulas."""
     formulas = [_formula(found) for found in _FORMULA.finditer(text)]
     around = escape(_FORMULA.sub(_PLACE, text)).split(_PLACE)
     return around[0] + "".join(f"${formula}${words}" for formula, words in zip(formulas, around[1:], strict=True))
@@ -134,7 +134,7 @@ def _formula(found: re.Match[str]) -> str:
 
 
 def _number(text: str, point: str) -> str:
-    """A decimal number, its digits in groups."""
+    """Write a decimal number with its digits in groups."""
     found = _NUMBER.match(text)
     if found is None:
         return escape(text)
@@ -145,5 +145,5 @@ def _number(text: str, point: str) -> str:
 
 
 def _sentence(text: str) -> str:
-    """A text that begins with a capital letter."""
+    """Return a text that begins with a capital letter."""
     return _typeset(capitalised(text))

@@ -1,4 +1,4 @@
-"""The sentences by which steps follow, in the form that suits the controls, the constraints and what they build on."""
+"""The sentences of rules, in the form that suits the controls, the constraints and the sources of a step."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from satsym.symbolic.principle.path.notation import entry, holds_controls, of_st
 
 
 def listed_sources(texts: Texts, named: Mapping[str, str]) -> str:
-    """What a step follows from, by name: as an enumeration, after which come the constants that are put in."""
+    """Enumerate the sources of a step by name, followed by the constants that are substituted."""
     listed = texts.listed([text for name, text in named.items() if text and name != "definitions"])
     constants = named.get("definitions")
     return texts.get("references", "besides", listed=listed, constants=constants) if constants else listed
 
 
 def rule(context: Context, step: Step, sources: str) -> str:
-    """The sentence by which a step follows: that for free controls or for a single one, where there is such a form."""
+    """Return the sentence of a step's rule, in the form for free controls or a single one where there is one."""
     texts = context.texts
     angle = _angle(context.derivation)
     part = letter_of_parts(problem) if (problem := context.derivation.problem) else ""
@@ -40,14 +40,14 @@ def rule(context: Context, step: Step, sources: str) -> str:
 
 
 def _angle(derivation: Derivation) -> str:
-    """The one angle among the control sets, or a letter that stands for each of several."""
+    """Return the one angle among the control sets, or a letter that stands for each of several."""
     parts = parts_of(derivation.problem) if derivation.problem else ()
     found = [v.latex for part in parts if part.kind == "angle" for v in part.controls]
     return found[0] if len(found) == 1 else r"\beta"
 
 
 def _by_order(context: Context, sources: str) -> dict[str, str]:
-    """What is said of the derivatives of path constraints, which may all be of one order."""
+    """Return the sentence on derivatives of path constraints, which may all be of one order."""
     if "constraint_order" not in context.derivation:
         return {}
     assert context.derivation.problem is not None
@@ -59,7 +59,7 @@ def _by_order(context: Context, sources: str) -> dict[str, str]:
 
 
 def _forms(derivation: Derivation) -> list[str]:
-    """What of the controls a sentence may have a form for."""
+    """Return the kinds of controls for which a sentence may have a form."""
     problem, controls = derivation.problem, derivation.model.controls
     limited = problem is not None and (problem.control_set != "free" or bool(problem.control_sets))
     held = problem is not None and holds_controls(problem)
@@ -74,7 +74,7 @@ def _forms(derivation: Derivation) -> list[str]:
 
 
 def quantities(context: Context, step: Step) -> str:
-    """What the step names, in words where the texts have some: the conserved quantities."""
+    """Name the quantities of a step in words, where the texts have them: the conserved quantities."""
     table, found = "conserved", []
     for e in step.equations:
         word = context.texts.find(table, e.name) or context.texts.find(table, e.name.partition("_")[0])
@@ -87,12 +87,12 @@ BY_INSPECTION = frozenset({"declared", "dimensions agree"})
 
 
 def checked(texts: Texts, check: Check) -> str:
-    """What was found true, and how; not the measured deviation, which is noise, but its limit."""
+    """State what was verified, and how: with the limit of the deviation, not its measured value, which is noise."""
     return f"{texts.get('claims', check.claim)} ({_how(texts, check, '')})."
 
 
 def listed(derivation: Derivation, texts: Texts) -> str:
-    """List the checks of all steps; what was found of every step is said once."""
+    """List the checks of all steps, with what they have in common stated once."""
     steps = derivation.steps
     common = [c for c in steps[0].checks if all(c.claim in {other.claim for other in s.checks} for s in steps)]
     paragraphs = [texts.get("methods", "all", **_measures(texts, LIMIT))]

@@ -1,4 +1,4 @@
-"""What a derivation starts from, typeset: cost, control set, quantities, named constants, position and forces."""
+"""The statement of a problem, typeset: cost, control set, quantities, named constants, position and forces."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from satsym.symbolic.principle.path.interior import condition, named
 from satsym.symbolic.principle.path.notation import holds_controls, rate
 
 HEAD = 9
-"""Lines at the foot of a page that are not too few for the table of quantities to begin on."""
+"""Least number of lines left on a page for the table of quantities to begin there."""
 TAIL = 4
-"""Rows of that table, at least, that its last page has."""
+"""Least number of rows of that table on its last page."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """Paragraphs, and the addresses of the first and last equation of each declared thing that steps refer to."""
+    """Paragraphs, and the addresses of the first and last equation of each declaration that steps refer to."""
 
     paragraphs: tuple[str, ...] = ()
     ends: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
 def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    """The whole of it."""
+    """Typeset the whole statement."""
     kinds = (
         *(_cost, _control_set, _conditions),
         *(_figure, _quantities, _assumed, _definitions),
@@ -103,7 +103,7 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
 
 
 def admissible(problem: Problem, texts: Texts) -> tuple[str, list[str]]:
-    """What is said of the control set, and the inequalities that controls obey; none where they are free."""
+    """Describe the control set, with the inequalities that controls obey; none where they are free."""
     parts = parts_of(problem)
     shown = [line for part in parts for line in _limited(part)]
     if not shown:
@@ -116,7 +116,7 @@ def admissible(problem: Problem, texts: Texts) -> tuple[str, list[str]]:
 
 
 def _limited(part: ControlPart) -> list[str]:
-    """What the controls of one set obey."""
+    """Write the inequalities of the controls of one set."""
     controls, limits = [v.latex for v in part.controls], [v.latex for v in part.limits]
     if part.kind == "box":
         lower, upper = limits[: len(controls)], limits[len(controls) :]
@@ -133,7 +133,7 @@ def _conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
 
 
 def conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Iterator[tuple[str, list[Row]]]:
-    """What the motion must meet at its end, all the way, and on the way: a sentence and its equations each."""
+    """Write the conditions at the end, along the trajectory and on the way: a sentence and equations each."""
     problem = derivation.problem
     if problem is None:
         return
@@ -168,7 +168,7 @@ def conditions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Ite
 
 
 def _one(key: str, rows: Sequence[Row]) -> str:
-    """The text about a single one, where there is one row."""
+    """Return the text for a single equation, where there is one row."""
     return key if len(rows) > 1 else f"{key}_one"
 
 
@@ -193,7 +193,7 @@ def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
 
 
 def _others(derivation: Derivation, groups: Mapping[str, Sequence[Variable]]) -> tuple[Variable, ...]:
-    """What statement and steps name besides."""
+    """Return the other quantities that statement and steps name."""
     known = {v.symbol for group in groups.values() for v in group}
     stated = [side for said in derivation.model.statement() for line in said.lines for side in (line.left, line.right)]
     derived = [side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs)]
@@ -203,7 +203,7 @@ def _others(derivation: Derivation, groups: Mapping[str, Sequence[Variable]]) ->
 
 
 def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    """Signs that were declared, and what parameters must obey together."""
+    """Write the declared signs, and the conditions on parameters."""
     model = derivation.model
     declared = (*model.states, *model.parameters, *(d.variable for d in model.definitions))
     positive = r",\, \allowbreak ".join(v.latex for v in declared if v.positive)
@@ -217,7 +217,7 @@ def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 
 
 def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts, notation: Mapping[str, str]) -> str:
-    """All quantities in one table that may run over several pages, none of which has one of a group alone.
+    """Write all quantities in one table that may run over several pages, without a group split badly.
 
     The last page of several has more than a row or two.
     """
@@ -258,7 +258,7 @@ def _definitions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
 
 
 def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    """What the kind of model states."""
+    """Write the statement of the kind of model."""
     paragraphs: list[str] = []
     ends: dict[str, tuple[str, str]] = {}
     for said in derivation.model.statement():
@@ -277,7 +277,7 @@ def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 
 
 def _rows(line: Line, texts: Texts, typeset: Typesetter) -> list[Row]:
-    """An equation; several where a vector is too wide."""
+    """Write an equation, or several where a vector is too wide."""
     left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
     left += rf"_{{\text{{{tex.escape(texts.phrase(line.index))}}}}}" if line.index else ""
     if line.components:
@@ -308,7 +308,7 @@ def _outputs(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 
 
 def _vector(name: str, components: Sequence[tuple[Term, ...]]) -> list[Row]:
-    """A vector in a row or as a column, whichever fits, or else component by component."""
+    """Write a vector in a row or as a column, whichever fits, or else component by component."""
     cells = [joined(terms) for terms in components]
     across = r",\; ".join(cells)
     if r"\frac" not in across and width(across) <= 0.6 * LINE:

@@ -1,4 +1,4 @@
-"""The equations of one step, typeset: most as they stand, some in the way that suits what they say."""
+"""The equations of one step, typeset: most unchanged, some in a form that suits their content."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from satsym.symbolic.principle.transversality import on_a_reference
 from satsym.symbolic.switching.phase_plane import phase_plane
 
 LONGEST_ROW = 12
-"""Lines of an equation that is shown where a step has several of no other use, at most."""
+"""Largest number of lines of an equation that is shown in a step with several unused ones."""
 ZEROS_IN_A_LINE = 6
-"""Things that are zero on one line, at most; fewer have a line each."""
+"""Largest number of vanishing quantities on one line."""
 
 
 def shown(context: Context, step: Step) -> Shown:
@@ -74,7 +74,7 @@ def _as_they_stand(context: Context, step: Step) -> Shown:
 
 
 def _by_constraint(context: Context, step: Step) -> Shown:
-    """What holds while each constraint is active apart, where there are several."""
+    """Typeset the equations for each active constraint separately, where there are several."""
     problem = context.derivation.problem
     names = [*of_states(problem), *mixed(problem)] if problem else []
     groups: dict[str, list[Row]] = {}
@@ -93,7 +93,7 @@ def _by_constraint(context: Context, step: Step) -> Shown:
 
 
 def _once(rows: Sequence[Row]) -> Shown:
-    """What several of them say alike is shown the first time, and has its number for all of them."""
+    """Show equations that several constraints share only once, with one number for all of them."""
     first: dict[tuple[object, ...], Row] = {}
     same = [(row, first.setdefault((row.left, row.right), row)) for row in rows]
     shown = list(first.values())
@@ -104,13 +104,13 @@ def _once(rows: Sequence[Row]) -> Shown:
 
 
 def _repeated(shown: Sequence[Row], same: Sequence[tuple[Row, Row]]) -> list[str]:
-    """Labels of rows that are not shown, at the numbers of shown ones that say the same."""
+    """Return the labels of omitted rows, at the numbers of equal rows that are shown."""
     places = {row.address: k for k, row in enumerate(reversed(shown))}
     return [also(places[old.address], [row.address]) for row, old in same]
 
 
 def _with_whole_matrices(context: Context, step: Step) -> Shown:
-    """Matrices among the equations; long entries that matrices show by name follow theirs."""
+    """Typeset matrices among the equations; long entries that they show by name follow."""
     parts: list[str] = []
     waiting: list[Row] = []
     shown: list[Row] = []
@@ -145,13 +145,13 @@ def _rows(context: Context, step: Step, equation: Equation) -> tuple[list[Row], 
 
 
 def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
-    """A polynomial by falling powers."""
+    """Typeset a polynomial by falling powers."""
     address = f"{context.address(step)}.{equation.name}"
     return Row(address, context.typeset.terms(equation.lhs), tuple(context.typeset.by_powers(equation.rhs)))
 
 
 def conclusion(context: Context, said: Conclusion) -> str:
-    """The sentence of a conclusion, with its expressions filled in; tuples as enumerations."""
+    """Return the sentence of a conclusion, with its expressions filled in; tuples as enumerations."""
     fill = {
         place: context.texts.listed([f"${text}$" for text in context.typeset.items(value)])
         for place, value in said.values.items()
@@ -164,7 +164,7 @@ def conclusion(context: Context, said: Conclusion) -> str:
 
 
 def _stationarity(context: Context, step: Step) -> Shown:
-    """The conditions as derivatives of H, then what they say of the controls."""
+    """Typeset the conditions as derivatives of H, then their solution for the controls."""
     symbol = context.typeset.symbol
     conditions = [
         Row(
@@ -196,7 +196,7 @@ def _costate_equations(context: Context, step: Step) -> Shown:
 
 
 def costate_rows(context: Context, step: Step) -> list[Row]:
-    """Terms in the order of the costates, even where that begins with a minus."""
+    """Return terms in the order of the costates, even where a minus comes first."""
     terms = context.typeset.terms
     return [replace(row_of(context, step, e), right=terms(e.rhs, plus_first=False)) for e in step.equations]
 
@@ -208,7 +208,7 @@ def _at_the_end(context: Context, step: Step) -> Shown:
 
 
 def _boundary_conditions(context: Context, step: Step) -> Shown:
-    """Initial state, final costates and final time apart, then the boundary types in words."""
+    """Typeset initial state, final costates and final time separately, then the boundary types in words."""
     texts, problem = context.texts, context.derivation.problem
     assert problem is not None
     states = [v.symbol for v in context.derivation.model.states]
@@ -237,7 +237,7 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
 
 
 def _transfer_functions(context: Context, step: Step) -> Shown:
-    """Ratios of polynomials by falling powers, without fractions in them."""
+    """Typeset ratios of polynomials by falling powers, without fractions in them."""
     rows = []
     for e in step.equations:
         above, below = map(joined, context.typeset.ratio_in_laplace(e.rhs))
@@ -247,21 +247,21 @@ def _transfer_functions(context: Context, step: Step) -> Shown:
 
 
 def _poles(context: Context, step: Step) -> Shown:
-    """The polynomial by falling powers, then its zeros."""
+    """Typeset the polynomial by falling powers, then its zeros."""
     rows = [row_of(context, step, e) for e in step.equations]
     right = tuple(context.typeset.in_laplace(step.equations[0].rhs))
     return _display([replace(rows[0], right=right), *rows[1:]])
 
 
 def _smoothed(context: Context, step: Step) -> Shown:
-    """Controls of the regularised problem with its mark."""
+    """Typeset controls of the regularised problem with their mark."""
     marked = {v.symbol: plain(rf"{v.latex}^{{\varepsilon}}") for v in context.derivation.model.controls}
     rows = [(row_of(context, step, e), e.lhs) for e in step.equations]
     return _display([replace(row, left=marked.get(str(left), row.left)) for row, left in rows])
 
 
 def _with_phase_plane(context: Context, step: Step) -> Shown:
-    """The law of the state, and a picture of what it does."""
+    """Typeset the law of the state, and draw its phase plane."""
     found = _display([row_of(context, step, e) for e in step.equations])
     plane = phase_plane(context.derivation)
     assert plane is not None
@@ -270,7 +270,7 @@ def _with_phase_plane(context: Context, step: Step) -> Shown:
 
 
 def _shorter(context: Context, step: Step) -> Shown:
-    """Without equations that take a good part of a page, which have the number of the one before."""
+    """Typeset without equations that take much of a page, which share the number of the one before."""
     rows = [row_of(context, step, e) for e in step.equations]
     shown = [row for row in rows if width(joined(row.right)) <= LONGEST_ROW * LINE] or rows
     left = [row for row in rows if row not in shown]
@@ -284,7 +284,7 @@ def _shorter(context: Context, step: Step) -> Shown:
 
 
 def _zeros_together(context: Context, step: Step) -> Shown:
-    """Several things that are zero on one line; the others as they stand."""
+    """Typeset several quantities that are zero on one line; the others separately."""
     rows = [(row_of(context, step, e), context.typeset.is_zero(e.rhs)) for e in step.equations]
     zero, others = ([row for row, vanishes in rows if vanishes is kept] for kept in (True, False))
     if len(zero) < ZEROS_IN_A_LINE:
@@ -297,7 +297,7 @@ def _zeros_together(context: Context, step: Step) -> Shown:
 
 
 def _vectors(context: Context, step: Step) -> Shown:
-    """Vectors, of which none is zero as a number is."""
+    """Typeset vectors, with the zero vector distinguished from the number zero."""
     rows = [(row_of(context, step, e), context.typeset.is_zero(e.rhs)) for e in step.equations]
     return _once([replace(row, right=plain(r"\mathbf{0}")) if zero else row for row, zero in rows])
 

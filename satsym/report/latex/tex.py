@@ -1,4 +1,4 @@
-"""Text, units and numbers from outside, made safe and well set for LaTeX."""
+"""Text, units and numbers from outside, escaped and well set for LaTeX."""
 
 from __future__ import annotations
 
@@ -45,26 +45,26 @@ _SYMBOLS = {
     "\N{NO-BREAK SPACE}": "~",
 }
 LARGEST_DENOMINATOR, LARGEST_DIGITS = 100, 12
-"""Denominator of a fraction as which a number is written that has more digits than these, at most."""
+"""Largest denominator of a fraction that replaces a decimal, and the number of digits above which it does."""
 GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
 _NAME = re.compile(
     r"(?P<space>^| )(?P<before>\(?)(?P<sign>\\ensuremath\{-\})?"
     r"(?P<name>[B-HJ-Zb-z]|[a-z]{2,}|[0-9]+)(?=[,;:.)]*(?: |$))"
 )
-"""A word of escaped text that may be the name of something, or a number; a and I are words."""
+"""A word of escaped text that may be a name, or a number; a and I are words."""
 _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
 
 
 def escape(text: str) -> str:
-    """Any text, so that LaTeX prints it and nothing more; what its fonts lack appears by its code point."""
+    """Escape any text so that LaTeX prints it; characters that its fonts lack appear as code points."""
     escaped = "".join(map(_character, unicodedata.normalize("NFC", " ".join(text.split()))))
     # hyphens stay hyphens: TeX would join them to a dash; before a name or number alone they are signs
     return re.sub(r"(?<=\s)-(?=\w)", r"\\ensuremath{-}", re.sub("-(?=-)", "-{}", escaped))
 
 
 def worded(text: str, notation: Mapping[str, str]) -> str:
-    """What people say of quantities: names of axes and variables as in formulas; with numbers, not parted from a word.
+    """Typeset a phrase about quantities, with names as in formulas, and numbers kept with their words.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def worded(text: str, notation: Mapping[str, str]) -> str:
 
 
 def bookmark(text: str) -> str:
-    """Any text, for places where no mathematics can stand: symbols are spelt."""
+    """Return a text for places without mathematics, with symbols spelt out."""
     return re.sub(r"\\ensuremath\{[\\^]*(\w+|-)\}", r"\1", escape(text))
 
 
@@ -109,7 +109,7 @@ def _character(c: str) -> str:
 
 
 def unit(text: str) -> str:
-    """A unit such as ``km**3/s**2``, upright; an en dash for a pure number."""
+    """Typeset a unit such as ``km**3/s**2``, upright; an en dash for a pure number."""
     if text.strip() in ("", "1"):
         return "--"
     compact = text.replace(" ", "")
@@ -128,7 +128,7 @@ def _factor(unit: re.Match[str]) -> str:
 
 
 def number(value: float | None, point: str = ".") -> str:
-    """A number as a person writes it, with a decimal point or what stands for it; an en dash for none."""
+    """Write a number with a decimal point or its replacement; an en dash for none."""
     if value is None:
         return "--"
     ratio = Fraction(value).limit_denominator(LARGEST_DENOMINATOR)
@@ -142,10 +142,10 @@ def number(value: float | None, point: str = ".") -> str:
 
 
 def name(identifier: str) -> str:
-    """A name as it is typed in files."""
+    """Typeset a name as it is typed in files."""
     return rf"\texttt{{{escape(identifier)}}}"
 
 
 def label(address: str) -> str:
-    """An address, as a LaTeX label."""
+    """Return an address as a LaTeX label."""
     return re.sub(r"[^A-Za-z0-9_.:+-]", "-", address)

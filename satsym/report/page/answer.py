@@ -1,4 +1,4 @@
-"""The answer and its certificate: facts, tables, and what the verdict claims and does not."""
+"""The answer and its certificate: facts, tables, and what the verdict claims and does not claim."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from satsym.status import Scope, Verdict
 
 
 def facts(solution: Solution, texts: Texts) -> Markup:
-    """The cost, the final time, and how they were found."""
+    """Return the cost, the final time, and how they were found."""
     instance, spec = solution.instance, spec_of(solution.instance)
     unit = unit_text(time_unit(spec) or "1")
     cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
@@ -50,17 +50,17 @@ def facts(solution: Solution, texts: Texts) -> Markup:
 
 
 def states(solution: Solution, texts: Texts) -> Markup:
-    """Where each state starts and ends, and its costate."""
+    """Return the initial and final value of each state, and its costate."""
     return table(texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam))
 
 
 def controls(solution: Solution, texts: Texts) -> Markup:
-    """How far each control goes, and its bounds."""
+    """Return the range of each control, and its bounds."""
     return table(texts.get("page", "controls"), control_rows(solution.instance, solution.times, solution.u))
 
 
 def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
-    """The verdict, what was measured, and what was compared, in the words of the terminal."""
+    """Return the verdict, measured values, and comparisons, in the words of the terminal."""
     theorem = message(found.because) if theorem_lines(found) else ""
     proved = found.verdict is Verdict.CERTIFIED and found.scope is Scope.LOCAL
     compared = competitor_rows(found, spec)
@@ -74,7 +74,10 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
 
 
 def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
-    """Rows below their header, without empty columns; a first cell names its row, and numbers are as in print."""
+    """Return rows below their header, without empty columns, with numbers as in print.
+
+    The first cell of each row names it.
+    """
     header, *body = rows
     body = [
         [unit_text(cell) if name == say("unit") else decimal(cell) for name, cell in zip(header, row, strict=True)]
@@ -96,13 +99,13 @@ _NUMBER = re.compile(r"[-\N{MINUS SIGN}]?\d[\d.,]*(e[-+]?\d+)?( %)?")
 
 
 def _numeric(column: Sequence[str]) -> bool:
-    """Whether a column has numbers, and at most single words beside them, such as ``free``."""
+    """Tell whether a column has numbers, and at most single words beside them, such as ``free``."""
     filled = [cell for cell in column if cell]
     return any(map(_NUMBER.fullmatch, filled)) and all(" " not in cell or _NUMBER.fullmatch(cell) for cell in filled)
 
 
 def proof(found: Proof, texts: Texts) -> Markup:
-    """The section of a page; of an attempt that failed, why, and what was shown until then."""
+    """Return the section on a proof; for a failed attempt, why it failed, and what was shown until then."""
     parts = [tag("p", tag("b", message(found.status.value), class_=_CLASSES[found.status]), _reason(found))]
     if found.theorem is not None:
         parts += [
@@ -149,7 +152,7 @@ def _row(name: str, found: Enclosure) -> tuple[str, ...]:
 
 
 def _enclosures(found: Proof, texts: Texts) -> list[tuple[str, ...]]:
-    """Rows of the objective, the times, the costates at the start and the states at the end."""
+    """Return rows of the objective, the times, the initial costates and the final states."""
     known = [
         (texts.get("page", "objective"), found.objective),
         (texts.get("page", "final_time"), found.t_final),
@@ -161,7 +164,7 @@ def _enclosures(found: Proof, texts: Texts) -> list[tuple[str, ...]]:
 
 
 def _nodes(found: Proof, texts: Texts) -> Markup:
-    """States and costates along the extremal, folded away."""
+    """Return states and costates along the extremal, folded away."""
     parts = []
     for node in found.nodes:
         rows = [_row(name, one) for name, one in node.x.items()]

@@ -1,4 +1,4 @@
-"""A derivation as a section: what it starts from, then each step with its rule, its equations and its checks."""
+"""A derivation as a section: its statement, then each step with its rule, its equations and its checks."""
 
 from __future__ import annotations
 
@@ -27,23 +27,22 @@ if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step
 
 ROOM = 44.0
-"""Width in em that an equation may take, on paper too, which cannot be scrolled."""
+"""Width in em that an equation may take, also on paper, which cannot be scrolled."""
 
 BETWEEN, FRACTIONS, SMALLEST_FONT = 1.0, 0.75, 0.45
-"""Space between columns of a matrix, in em; the size of letters in its fractions, and of those of a wide one at least.
-"""
+"""Space between columns of a matrix, in em; the size of letters in its fractions, and the least size in a wide one."""
 
 _SIZED = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")
 
 OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
-"""Steps that are shown from the start."""
+"""Steps that are unfolded at first."""
 
 DEFINED = "declared"
-"""What the addresses of definitions begin with, as in documents."""
+"""The beginning of the addresses of definitions, as in documents."""
 
 
 class Derived:
-    """The section of one derivation.
+    """The section of one derivation on a page.
 
     Parameters
     ----------
@@ -68,11 +67,14 @@ class Derived:
         return joined(tag("h3", self._texts.get("sections", kind)), self.statement(), self.steps())
 
     def statement(self) -> Markup:
-        """What is to be minimised, what the model states, and its quantities; to stand above the steps."""
+        """Return what is minimised, what the model states, and its quantities, to be placed above the steps."""
         return joined(*self._statement())
 
     def steps(self) -> Markup:
-        """Each step under the heading of its section; to be asked for after the statement, whose equations it cites."""
+        """Return each step under the heading of its section.
+
+        It must be called after the statement, whose equations it cites.
+        """
         parts = [tag("h3", self._texts.get("sections", "motion"))]
         for number, step in enumerate(self._derivation.steps, 1):
             if step.name in SECTION_FROM:
@@ -115,7 +117,7 @@ class Derived:
         yield from self._definitions()
 
     def _definitions(self) -> Iterator[Markup]:
-        """What the named constants are, numbered: steps say where they are put in."""
+        """Return the named constants, numbered, since steps cite them."""
         name, typeset = self._derivation.name, self._context.typeset
         for k, one in enumerate(self._derivation.model.definitions):
             if not k:
@@ -145,7 +147,7 @@ class Derived:
         )
 
     def _step(self, number: int, step: Step) -> Markup:
-        """Heading, rule, equations, what it comes to, checks."""
+        """Return a step: heading, rule, equations, conclusions and checks."""
         texts, label = self._texts, tex.label(self._context.address(step))
         title = texts.get("titles", step.name)
         stated = prose(rule(self._context, step, self._sources(step)), self._numbers)
@@ -181,7 +183,7 @@ class Derived:
         return tag("div", written, number, class_="equation", id=label)
 
     def _lines(self, step: Step) -> Iterator[tuple[str, str, float]]:
-        """Address, LaTeX and width of each equation; a matrix comes in place of the equations that are its entries."""
+        """Return address, LaTeX and width of each equation, with matrices in place of their entries."""
         named = matrices(self._derivation, step)
         entries = [e for one in named for e in one.equations]
         address, plain = self._context.address(step), self._context.typeset
@@ -220,7 +222,7 @@ class Derived:
 
 
 def in_lines(left: str, terms: Sequence[Term], end: str = "") -> str:
-    """An equation on as many lines as its width asks for."""
+    """Return an equation on as many lines as its width needs."""
     first, *others = broken(terms, ROOM - min(width(left), ROOM / 2.0))
     if not others:
         return f"{left} = {first} {end}".rstrip()

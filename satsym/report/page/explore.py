@@ -1,4 +1,4 @@
-"""The interactive part of a page: sliders over time and over answers, with plotly inside the page."""
+"""The interactive part of a page: sliders over time and over answers, with plotly included in the page."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ WORDS = {
     "play": "Play",
     "pause": "Pause",
 }
-"""What the script says, in English."""
+"""English words that the script shows."""
 
 
 def explore(answers: Sequence[Answer], texts: Texts) -> Markup:
-    """The controls, empty places for pictures, and a table of values; all of it hidden where scripts do not run.
+    """Return controls, places for pictures, and a table of values, all hidden where scripts do not run.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def explore(answers: Sequence[Answer], texts: Texts) -> Markup:
 
 
 def scripts(answers: Sequence[Answer]) -> Markup:
-    """The data, the library and the script, for the end of a page.
+    """Return the data, the library and the script, for the end of a page.
 
     Raises
     ------
@@ -117,14 +117,14 @@ def scripts(answers: Sequence[Answer]) -> Markup:
 
 
 MOST_ANSWERS = 60
-"""Answers on a page, evenly chosen among more."""
+"""Largest number of answers on a page, evenly chosen among more."""
 ROUNDING = 1e-12
-"""Relative difference below which two numbers of an instance are the same."""
+"""Relative difference up to which two numbers of an instance are equal."""
 ARRAYS = ("t", "x", "u", "lam")
 
 
 def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
-    """The answer alone, or those of a study: in the order of what it varies, if that is one number.
+    """Return the answer alone, or those of a study, in the order of the varied number if it is only one.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
 
 
 def _same(one: Instance, other: Instance) -> bool:
-    """Whether two instances of a model have the same numbers, but for rounding."""
+    """Tell whether two instances of a model have the same numbers up to rounding."""
 
     def numbers(case: Instance) -> list[float]:
         ends = [value for value in case.final.values() if isinstance(value, float)]
@@ -192,7 +192,7 @@ def _same(one: Instance, other: Instance) -> bool:
 
 
 def _trajectories(folder: Path, names: Sequence[str]) -> dict[int, dict[str, Array]]:
-    """Arrays by the number of their row."""
+    """Return arrays by the number of their row."""
     beginning = TRAJECTORIES.partition("{")[0]
     wanted = [name for name in names if name.startswith(beginning)]
     found: dict[int, dict[str, Array]] = {}
@@ -205,7 +205,7 @@ def _trajectories(folder: Path, names: Sequence[str]) -> dict[int, dict[str, Arr
 
 
 def _chosen(table: dict[str, Array], varied: Sequence[str], rows: Sequence[int]) -> list[int]:
-    """The rows that are shown, in the order in which a slider goes through them."""
+    """Return the rows that are shown, in the order of the slider."""
     whole = [row for row in rows if all(math.isfinite(table[name][row]) for name in varied)]
     ordered = sorted(whole, key=lambda row: tuple(table[name][row] for name in varied))
     if len(ordered) <= MOST_ANSWERS:

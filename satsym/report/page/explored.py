@@ -1,4 +1,4 @@
-"""What the interactive part of a page shows, as plain data: panels over time, and what moves."""
+"""The contents of the interactive part of a page, as plain data: panels over time, and moving objects."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ from satsym.report.said import decimal, say
 from satsym.solution import Solution
 
 Data: TypeAlias = dict[str, Any]
-"""What becomes JSON."""
+"""An object that is written as JSON."""
 NODES, FEWER = 1200, 200
-"""Nodes that are kept of an answer, and of each of several."""
+"""Largest number of nodes that are kept of a single answer, and of each of several."""
 DIGITS = 6
 GRID = 61
-"""Points of a grid on which it is known what is forbidden."""
+"""Number of points along an axis of a grid of forbidden regions."""
 THRUST = 0.2
 """Length of the longest arrow, relative to half the size of the picture."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """An answer, and what it is the answer for.
+    """An answer of the interactive part, with its label.
 
     Attributes
     ----------
@@ -49,11 +49,11 @@ class Answer:
     solution: Solution
     label: str = ""
     own: bool = False
-    """Whether it is the answer of the page itself, with which a slider begins."""
+    """Whether this is the answer of the page itself, with which a slider begins."""
 
 
 def data(answers: Sequence[Answer]) -> Data:
-    """What is shown of some answers, of which a slider chooses."""
+    """Return the data of some answers, one of which is chosen by a slider."""
     most = NODES if len(answers) == 1 else FEWER
     shown_ones = [(one, found) for one in answers if (found := _answer(one, most))["t"]]
     begin = next((k for k, (one, _) in enumerate(shown_ones) if one.own), 0)
@@ -78,7 +78,7 @@ def _answer(answer: Answer, most: int) -> Data:
 
 
 def _kept(scene: Scene, most: int) -> NDArray[np.intp]:
-    """Nodes that are kept: evenly in their number, and all at which a time occurs twice."""
+    """Return the nodes that are kept: evenly spaced ones, and all at which a time occurs twice."""
     known = np.flatnonzero(np.isfinite(scene.x).all(axis=0))
     jumps = np.flatnonzero(np.diff(scene.times) <= 0.0)
     even = np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int)
@@ -86,7 +86,7 @@ def _kept(scene: Scene, most: int) -> NDArray[np.intp]:
 
 
 def _panels(scene: Scene, kept: NDArray[np.intp]) -> list[Data]:
-    """States at the left; at the right controls, below each its switching function, and then costates."""
+    """Return panels of states at the left; at the right controls, their switching functions, and costates."""
     groups: tuple[tuple[str, list[Series], str], ...] = (
         ("state", series.states(scene), style.STATE),
         ("control", series.controls(scene), style.CONTROL),
@@ -124,7 +124,7 @@ def _panel(group: str, quantity: Series, reading: Reading, colour: str, kept: ND
 
 
 def _switching(scene: Scene, control: Series, kept: NDArray[np.intp]) -> list[Data]:
-    """The switching function of a control, or of a norm, if it has one."""
+    """Return the switching function of a control, or of a norm, if it has one."""
     spec, found = scene.spec, []
     names = [v.symbol for v in spec.controls]
     for one in switching_functions.of(scene):
@@ -139,7 +139,7 @@ def _switching(scene: Scene, control: Series, kept: NDArray[np.intp]) -> list[Da
 
 
 def _scenes(scene: Scene, kept: NDArray[np.intp]) -> list[Data]:
-    """What moves: the path in space, the path seen from the reference, the body that turns."""
+    """Return the moving objects: the path in space, the path relative to the reference, the body that turns."""
     found = []
     orbit = Orbit.of(scene)
     if orbit is not None:
@@ -195,7 +195,7 @@ def _path(scene: Scene, orbit: Orbit, kept: NDArray[np.intp]) -> Data:
 
 
 def _moving(scene: Scene, around: Surroundings) -> Array | None:
-    """Where what is met at the end is at the nodes."""
+    """Return the places at the nodes of what is met at the end."""
     if around.moving is None:
         return None
     even = np.linspace(scene.nodes[0], scene.nodes[-1], around.moving.shape[1])
@@ -228,7 +228,7 @@ def _relative(orbit: Orbit, kept: NDArray[np.intp]) -> Data:
 
 
 def _forbidden(around: Surroundings, axes: Array, low: Array, high: Array, scale: float) -> list[Data]:
-    """Grids of what path constraints forbid, as far as the picture goes."""
+    """Return grids of the regions that path constraints forbid, within the picture."""
     half, middle = 0.5 * float((high - low).max()), 0.5 * (low + high)
     across, up = (np.linspace(centre - half, centre + half, GRID) for centre in middle)
     grid = axes.T @ np.array(np.meshgrid(across, up)).reshape(2, -1)
@@ -254,7 +254,7 @@ def _attitude(attitude: Attitude, kept: NDArray[np.intp]) -> Data:
 
 
 def _numbers(values: Array) -> list[float | None]:
-    """Short numbers; none where there is nothing to draw."""
+    """Return shortened numbers; ``None`` where there is nothing to draw."""
     return [_digits(value) if math.isfinite(value) else None for value in values.tolist()]
 
 
@@ -275,7 +275,7 @@ _TAGS = {"_": "sub", "^": "sup"}
 
 
 def shown(label: str) -> str:
-    r"""A label such as ``$\dot\theta$ [rad/s]`` with the tags ``sub`` and ``sup`` for indices, as HTML."""
+    r"""Return a label such as ``$\dot\theta$ [rad/s]`` as HTML with the tags ``sub`` and ``sup``."""
     text = label.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return " ".join(_FORMULA.sub(lambda found: _formula(found[1]), text).split())
 

@@ -1,4 +1,4 @@
-"""The motion as a small animation: SVG and CSS alone, with a pause, still where motion is not wanted."""
+"""The motion as a small animation in SVG and CSS alone, with a pause; still where animations are not wanted."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ SIDE = 400.0
 """Side of the picture, in its own units."""
 FRAMES = 120
 TURNS, SECONDS = 40, 10.0
-"""Pictures of a body that turns, and how long all of them take, as the style sheet has it."""
+"""Number of pictures of a turning body, and the seconds of all of them, as in the style sheet."""
 BODY = 0.55, 0.4, 0.28
-"""Half the sides of the box."""
+"""Half the lengths of the box's sides."""
 _SIGNS = (-1.0, 1.0)
 _CORNERS = [np.array([x * BODY[0], y * BODY[1], z * BODY[2]]) for x in _SIGNS for y in _SIGNS for z in _SIGNS]
 EDGES = [
@@ -35,11 +35,11 @@ EDGES = [
 """Edges of the box, shape (3, 2) each."""
 
 Placing: TypeAlias = Callable[[Array], Array]
-"""From points of a plane to points of the picture, shapes (2, N)."""
+"""A function from points of a plane to points of the picture, shapes (2, N)."""
 
 
 def motion(scene: Scene, texts: Texts) -> Markup:
-    """A figure: the path in space, else the body that turns; nothing where states tell neither."""
+    """Return a figure: the path in space, else the body that turns; empty where states give neither."""
     orbit = Orbit.of(scene)
     if orbit is None:
         attitude = Attitude.of(scene)
@@ -71,7 +71,7 @@ def motion(scene: Scene, texts: Texts) -> Markup:
 
 
 def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more: str) -> Markup:
-    """The picture with a way to stop it, and what it shows."""
+    """Return the picture with a button to stop it, and its description."""
     unit = unit_text(scene.time_unit) or texts.get("page", "units_of_time")
     span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit}"
     return tag(
@@ -91,7 +91,7 @@ def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more
 
 
 def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
-    """A box with its axes, one picture after the other; where nothing may move the last one stands."""
+    """Return a box with its axes, one picture after the other; the last one for readers without animation."""
     known = np.flatnonzero(np.isfinite(scene.x).all(axis=0))
     ticks = np.linspace(scene.nodes[known[0]], scene.nodes[known[-1]], TURNS)
     shown = known[np.searchsorted(scene.nodes[known], ticks).clip(0, len(known) - 1)]
@@ -119,12 +119,12 @@ def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
 
 
 def _line(points: Array) -> str:
-    """A path through points of the picture."""
+    """Return a path through points of the picture."""
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.T)
 
 
 def _placing(low: Array, high: Array) -> Placing:
-    """What puts a plane into the picture as far as these corners, at equal scales, upwards up."""
+    """Return the transformation of a plane to the picture with these corners, at equal scales."""
     half = 0.5 * float((high - low).max()) or 1.0
     scale = 0.5 * SIDE / half
     centre = 0.5 * (low + high)[:, None]
@@ -132,13 +132,13 @@ def _placing(low: Array, high: Array) -> Placing:
 
 
 def _evenly(times: Array, curve: Array) -> Array:
-    """Places at times that are evenly apart, shape (2, FRAMES + 1)."""
+    """Return places at evenly spaced times, shape (2, FRAMES + 1)."""
     ticks = np.linspace(times[0], times[-1], FRAMES + 1)
     return np.vstack([np.interp(ticks, times, row) for row in curve])
 
 
 def _points(curve: Array) -> list[str]:
-    """Coordinates as text, without what lies where the point before does."""
+    """Return coordinates as text, without repeated points."""
     found = [f"{x:.1f} {y:.1f}" for x, y in curve.T]
     return [one for k, one in enumerate(found) if k == 0 or one != found[k - 1]]
 
@@ -151,18 +151,18 @@ def _keyframes(name: str, places: Array) -> Markup:
 
 
 def _body(name: str, places: Array) -> Markup:
-    """A disc that moves; where nothing may move it stands at the end."""
+    """Return a moving disc; without animation, it is at the end."""
     x, y = places[:, -1]
     still = f"animation-name:{name};transform:translate({x:.1f}px,{y:.1f}px)"
     return tag("circle", r="6", class_=joined("body of-", name), style=still)
 
 
 UNIT_TOLERANCE = 1e-6
-"""How far from one the norm of a quaternion may be."""
+"""Largest deviation of a quaternion's norm from one."""
 ANGLES = {"yaw": 2, "roll": 0, "pitch": 1}
-"""The axis about which each angle turns, in the order in which they do."""
+"""The axis of each angle's turn, in the order of the turns."""
 SMALL_TURN, SEEN = 0.1, 0.5
-"""Angles of which none is larger, in rad, are magnified so that the largest is as large as the latter."""
+"""Largest angle in rad that is magnified, and the angle to which the largest one is magnified."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ class Attitude:
 
     @classmethod
     def of(cls, scene: Scene) -> Attitude | None:
-        """The attitude of a scene; nothing where no states tell one."""
+        """Return the attitude of a scene; ``None`` where no states describe one."""
         if not scene.drawable:
             return None
         torque = scene.u if len(scene.u) == 3 and _about_axes(scene) else None
@@ -203,7 +203,7 @@ class Attitude:
 
 
 def turned_by(q: Array) -> Array:
-    """Rotation matrices of unit quaternions, their scalar part last, shape (4, N) to (N, 3, 3)."""
+    """Return rotation matrices of unit quaternions with scalar part last, shape (4, N) to (N, 3, 3)."""
     x, y, z, w = q / np.linalg.norm(q, axis=0)
     rows = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
@@ -214,7 +214,7 @@ def turned_by(q: Array) -> Array:
 
 
 def about(axis: int, angle: Array) -> Array:
-    """Rotation matrices about an axis by angles (N,), shape (N, 3, 3)."""
+    """Return rotation matrices about an axis by angles (N,), shape (N, 3, 3)."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     found = np.zeros((len(angle), 3, 3))
     found[:, axis, axis] = 1.0
@@ -224,7 +224,7 @@ def about(axis: int, angle: Array) -> Array:
 
 
 def _quaternion(scene: Scene) -> Array | None:
-    """Four states q1 to q4 of norm one whose rates are those of a quaternion, its scalar part last; or none."""
+    """Return four states q1 to q4 of norm one with the rates of a quaternion, scalar part last; or ``None``."""
     names = scene.spec.state_names
     wanted = [f"q{k}" for k in (1, 2, 3, 4)]
     if not set(wanted) <= set(names):
@@ -236,7 +236,7 @@ def _quaternion(scene: Scene) -> Array | None:
 
 
 def _angles(scene: Scene) -> dict[str, Array] | None:
-    """The states whose meaning begins with roll, pitch or yaw angle, in rad; or none."""
+    """Return the states whose meaning begins with roll, pitch or yaw angle, in rad; or ``None``."""
     found = {}
     for variable, values in zip(scene.spec.states, scene.x, strict=True):
         name = variable.meaning.partition(" angle")[0]
@@ -246,5 +246,5 @@ def _angles(scene: Scene) -> dict[str, Array] | None:
 
 
 def _about_axes(scene: Scene) -> bool:
-    """Whether the controls are torques."""
+    """Tell whether the controls are torques about the axes of the body."""
     return all("torque" in control.meaning for control in scene.spec.controls)

@@ -1,4 +1,4 @@
-"""The page of one run."""
+"""The page of one run of ``satsym report``."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ if TYPE_CHECKING:
 
 
 WITHOUT_SCRIPTS = Markup('#explore, [href="#explore"] { display: none; }')
-"""Hides what scripts alone can show."""
+"""A style that hides what needs scripts."""
 
 DIGITS = 10
-"""Significant digits of given numbers."""
+"""Number of significant digits of given numbers."""
 
 
 @dataclass(frozen=True)
 class Given:
-    """What a run was called with on the command line.
+    """The command line of a run.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ def render(
     explored: Sequence[Answer] = (),
     proof: Proof | None = None,
 ) -> str:
-    """A page that needs nothing but itself.
+    """Return the run as a self-contained page.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def _sections(
 
 
 def _derived(solution: Solution, derivation: Derivation | None, texts: Texts) -> Derived | None:
-    """The derivation with the numbers of the instance."""
+    """Return the derivation with the numbers of the instance."""
     if derivation is None:
         return None
     from satsym.report.page.derived import Derived
@@ -224,16 +224,16 @@ _COLOURS = {
         for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "ALARM", "GLOBE", "RIM")
     },
 }
-"""What each colour of a picture is on a page, where it depends on whether that is light or dark."""
+"""Colours of a picture with the page's colours that replace them on light or dark grounds."""
 
 _COLOUR = re.compile("|".join(_COLOURS))
 
 OVERVIEW = "overview"
-"""Shows what the others show, too."""
+"""The name of the picture that repeats the others."""
 
 
 def pictures(solution: Solution, texts: Texts) -> list[Markup]:
-    """A figure for each picture but the overview."""
+    """Return a figure for each picture except the overview."""
     found = []
     for file, content in plots.pictures(solution, Look(("svg",), titled=False)).items():
         name = file.removesuffix(".svg")
@@ -248,19 +248,19 @@ def pictures(solution: Solution, texts: Texts) -> list[Markup]:
 
 
 def themed(svg: str) -> str:
-    """The element ``svg`` alone, its colours being those that the style sheets of a page name."""
+    """Return the element ``svg`` alone, with the colours that the style sheets of a page define."""
     body = _ABOUT.sub("", _BEFORE.sub("", svg)).strip()
     return _COLOUR.sub(lambda found: f"var(--{_COLOURS[found[0]]})", body)
 
 
 def _inline(svg: str, name: str, said: str) -> Markup:
-    """The element alone, with names of its own, and with words for those who do not see it."""
+    """Return the element alone, with unique names, and with a description for readers who do not see it."""
     body = _NAMED.sub(rf"\g<1>{name}-", themed(svg))
     return Markup(body.replace("<svg ", str(tag("svg", role="img", aria_label=said))[: -len("></svg>")] + " ", 1))
 
 
 def problem(instance: Instance, statement: Derived | None, values: Sequence[str], texts: Texts) -> Markup:
-    """The section on the problem: what is minimised, where the motion begins and ends, and what bounds the controls.
+    """Return the section on the problem: cost, ends of the motion, and bounds of the controls.
 
     Parameters
     ----------
@@ -280,7 +280,7 @@ def problem(instance: Instance, statement: Derived | None, values: Sequence[str]
 
 
 def _conditions(instance: Instance, texts: Texts) -> list[tuple[str, ...]]:
-    """Below a header, a row for each state: where it begins and where it is to end."""
+    """Return a table with a row for each state: its initial value and its final condition."""
     rows: list[tuple[str, ...]] = [
         (say("state"), say("initial"), say("final"), say("unit"), texts.get("words", "meaning").lower())
     ]
@@ -293,7 +293,7 @@ def _conditions(instance: Instance, texts: Texts) -> list[tuple[str, ...]]:
 
 
 def _final(instance: Instance, name: str) -> str:
-    """What is asked of a state at the end."""
+    """Return the condition on a state at the end."""
     if name in instance.ranges:
         lower, upper = (figure(end, DIGITS) if math.isfinite(end) else say("free") for end in instance.ranges[name])
         return f"[{lower}, {upper}]"
@@ -304,7 +304,7 @@ def _final(instance: Instance, name: str) -> str:
 
 
 def _admissible(instance: Instance) -> list[tuple[str, ...]]:
-    """Below a header, a row for each bound of controls and each path constraint."""
+    """Return a table with a row for each bound of controls and each path constraint."""
     spec = spec_of(instance)
     rows: list[tuple[str, ...]] = [(say("control"), say("lower bound"), say("upper bound"), say("unit"))]
     for variable, *bounds in zip(spec.controls, instance.lower, instance.upper, strict=True):
@@ -329,7 +329,7 @@ def _times(instance: Instance, texts: Texts) -> str:
 
 
 def _instance_file(instance: Instance, values: Sequence[str], texts: Texts) -> Markup:
-    """The file as it was read, and what stood in place of its numbers."""
+    """Return the instance file as it was read, and the numbers that replaced its own."""
     file = file_of(instance)
     if file is None:
         return Markup()

@@ -1,4 +1,4 @@
-"""Switching functions: what tells at which bound a control lies, where H is linear in it. Draws nothing."""
+"""Switching functions, whose sign determines at which bound a control is, where H is linear in it. Draws nothing."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from satsym.arrays import Array
 from satsym.report.plots.scene import Scene
 
 LINEAR = 1e-9
-"""Departure of H from a straight line, relative to its change, below which it is linear in a control."""
+"""Largest deviation of H from a straight line, relative to its change, for H to count as linear in a control."""
 STEP = 1e-6
-"""Relative to a largest norm: controls that are so small show in which direction H falls."""
+"""Size of test controls, relative to the largest norm, that show in which direction H falls."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ def _with(scene: Scene, i: int, value: float) -> Array:
 
 
 def _slope(scene: Scene, places: tuple[int, ...], low: Array, high: Array, width: float) -> Switching | None:
-    """The slope of H from one value to another, if H is linear between them."""
+    """Return the slope of H from one value to another, if H is linear between them."""
     if not width > 0.0:
         return None
     first, middle, last = (_hamiltonian(scene, u) for u in (low, 0.5 * (low + high), high))
@@ -70,7 +70,7 @@ def _slope(scene: Scene, places: tuple[int, ...], low: Array, high: Array, width
 
 
 def _downhill(scene: Scene, places: list[int], largest: float) -> Array | None:
-    """The direction in which H falls most quickly from no control, shape (k, N+1); none where it falls nowhere."""
+    """Return the direction in which H falls most quickly from zero control, shape (k, N+1); zero without one."""
     slopes = []
     for i in places:
         step = np.zeros_like(scene.u)

@@ -1,4 +1,4 @@
-"""Instances side by side on one page: what they share over time, their totals, and the law's range."""
+"""Instances side by side on one page: their common quantities over time, their totals, and the law's range."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 COLOURS = (style.INK, style.BLUE, style.VERMILION, style.GREEN, style.PURPLE, style.GREY)
 DASHES: tuple[Any, ...] = ("-", "-", (0, (6, 2)), (0, (3, 1.5)), (0, (1, 1.2)), "-.")
 SHOWN = 1.12
-"""Times of the longest transition that are shown."""
+"""Drawn duration, relative to the longest transition."""
 COMMANDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 DAMPINGS = (0.2, 5.0)
-"""Shares of the instance's own, in a range."""
+"""Least and largest damping of a range, relative to the instance's own."""
 
 
 def pictures(cases: Sequence[Case], look: Look = SCREEN) -> dict[str, files.Content]:
-    """The page ``comparison``: name -> content of each file; none where there are no answers."""
+    """Draw the page ``comparison``; map file names to contents, empty without answers."""
     with style.applied(look):
         drawn = page(cases)
         return {} if drawn is None else style.contents("comparison", drawn)
@@ -76,7 +76,7 @@ def page(cases: Sequence[Case]) -> Figure | None:
 def panel(axes: Axes, cases: Sequence[Case]) -> None:
     """Draw one quantity that the cases share.
 
-    It is the first in which they differ so little that their curves would look like one; else the first of all.
+    It is the first in which their curves differ too little to be distinguished; else the first of all.
     """
     shared = _shared(cases)
     hidden = ((variable, apart) for variable in shared if (apart := _differences(cases, variable)))
@@ -85,7 +85,7 @@ def panel(axes: Axes, cases: Sequence[Case]) -> None:
 
 
 def _shared(cases: Sequence[Case]) -> list[Variable]:
-    """States, used controls and limited quantities of all cases; what follows a command or is limited comes first."""
+    """Return common states, used controls and limited quantities; those with a command or a limit come first."""
     every = [
         {
             v.symbol: v
@@ -101,7 +101,7 @@ def _shared(cases: Sequence[Case]) -> list[Variable]:
 
 
 def _differences(cases: Sequence[Case], variable: Variable) -> dict[int, Array]:
-    """What a case has more than the first, by its number, where one of their curves would hide the other."""
+    """Return differences from the first case, by case number, where one curve would hide another."""
     first, found = cases[0], {}
     values, times = first.signal(variable.symbol), first.times - first.times[0]
     for k, case in enumerate(cases[1:], start=1):
@@ -113,12 +113,12 @@ def _differences(cases: Sequence[Case], variable: Variable) -> dict[int, Array]:
 
 
 def _drawn(cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array]) -> Mapping[int, Array]:
-    """What some have more than the first, or the variable itself, by the number of the case."""
+    """Return the differences of some cases, or the variable itself, by case number."""
     return apart or {k: case.signal(variable.symbol) for k, case in enumerate(cases)}
 
 
 def _measures(cases: Sequence[Case], panels: Sequence[tuple[Variable, Mapping[int, Array]]]) -> list[display.Scale]:
-    """The unit of each panel: values have one, and so have differences."""
+    """Return the unit of each panel; values share one, and so do differences."""
     found: dict[int, display.Scale] = {}
     for kind in (False, True):
         own = [k for k, (_, apart) in enumerate(panels) if bool(apart) is kind]
@@ -134,7 +134,7 @@ def _largest(rows: Iterable[Array]) -> float:
 def _over_time(
     axes: Axes, cases: Sequence[Case], variable: Variable, apart: Mapping[int, Array], measure: display.Scale
 ) -> None:
-    """A variable of all cases, or where there is any what some have more than the first."""
+    """Draw a variable of all cases, or the differences of some from the first."""
     end = SHOWN * max(_until(case) for case in cases)
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
@@ -183,13 +183,13 @@ def _over_time(
 
 
 def _until(case: Case) -> float:
-    """How long its transition takes, or all of its time where that is not known, or less."""
+    """Return the duration of a case's transition, or its whole time where that is not known, or shorter."""
     found, whole = case.metrics["transition_time"], float(case.times[-1] - case.times[0])
     return min(found, whole) if np.isfinite(found) else whole
 
 
 def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
-    """Bars, with their sizes beside them; ``room`` is how many inches an axis is long."""
+    """Draw bars, with their sizes beside them; ``room`` is the length of an axis in inches."""
     from satsym.analysis.classical.signals import SETTLING_BAND
 
     controls = cases[0].instance.model.spec.controls
@@ -230,7 +230,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
 
 
 def _range(panels: Sequence[Axes], case: Case) -> None:
-    """Largest torque and largest limited signal over damping, a line for each command."""
+    """Draw largest torque and largest limited signal over damping, a line for each command."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     from satsym.analysis.comparison import ranged

@@ -1,4 +1,4 @@
-"""The orbit that a motion follows, to scale: the whole conic with its foci and apses, and what of it is covered."""
+"""The orbit of a motion, to scale: the whole conic with its foci and apses, and the part that is covered."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 POINTS = 2000
 ROUND_ECCENTRICITY = 0.02
-"""Eccentricity from which the foci can be seen apart in the picture."""
+"""Least eccentricity at which the foci are visibly apart in the picture."""
 SMALLEST_REACH, MOST_REACH = 5.0, 40.0
-"""How far from the centre an open orbit is drawn, in units of the nearest distance or that of the start."""
+"""Least and largest drawn distance of an open orbit, in units of periapsis and of the start's distance."""
 CENTRE: dict[str, Any] = {"marker": "o", "markersize": 9.0, "color": "#E0A800", "linestyle": "none", "zorder": 3.9}
 EMPTY: dict[str, Any] = {"marker": "x", "markersize": 7.0, "color": style.GREY, "linestyle": "none", "zorder": 3.8}
 NEAREST: dict[str, Any] = {
@@ -46,19 +46,19 @@ SIDE = 5.4
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,)."""
+    """The parts of a drawn orbit in the model's unit of length; curves have shape (3, N), points (3,)."""
 
     curve: Array
-    """The whole conic, of an open one as much as has room."""
+    """The whole conic, or the part of an open one that fits."""
     travelled: Array | None
-    """The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre."""
+    """The motion of the instance, at most once round; ``None`` where its time is free, or it meets the centre."""
     start: Array
     nearest: Array | None
     farthest: Array | None
     empty: Array | None
-    """The last is the focus that nothing is in; ``None`` where there is none."""
+    """Characteristic points; the last is the empty focus, ``None`` where there is none."""
     asymptotes: tuple[Array, ...]
-    """Two rays from their common point, shape (3, 2) each; empty but for a hyperbola."""
+    """Two rays from their common point, shape (3, 2) each; empty except for a hyperbola."""
 
     @classmethod
     def of(cls, found: Survey) -> Drawn:
@@ -89,7 +89,7 @@ class Drawn:
 
 
 def page(found: Survey) -> Figure:
-    """The orbit at equal scales: in its plane, and unless that is one of coordinates also from along the axes."""
+    """Draw the orbit at equal scales, in its plane, and along the axes unless it lies in a plane of coordinates."""
     drawn, case = Drawn.of(found), found.case
     planes = views([drawn.curve], (r"$x$", r"$y$", r"$z$"))
     columns = style.across(min(2, len(planes)))
@@ -108,7 +108,7 @@ def page(found: Survey) -> Figure:
 
 
 def panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
-    """Draw a panel, and give the unit of its axes in that of the model, and its name."""
+    """Draw a panel; return the unit of its axes in that of the model, and its name."""
     curves = [c for c in (drawn.curve, drawn.travelled) if c is not None]
     seen = np.hstack([view.axes @ curve for curve in curves] + [np.zeros((2, 1))])
     low, high = seen.min(axis=1), seen.max(axis=1)
@@ -141,7 +141,7 @@ def panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
 
 
 def _caption(orbit: Elements, factor: float, unit: str) -> str:
-    """The kind of orbit, and the numbers that its shape shows."""
+    """State the kind of orbit, and the numbers of its shape."""
     called = "" if unit == "1" else f" {unit}"
     apses = [(orbit.periapsis, say("periapsis")), (orbit.apoapsis, say("apoapsis"))]
     shown = [f"{what} {decimal(figure(value / factor))}{called}" for value, what in apses if value]
@@ -176,7 +176,7 @@ def _flight(found: Survey) -> str:
 
 
 def _travelled(found: Survey) -> Array | None:
-    """The motion without control from the start to the final time, at most once round."""
+    """Return the uncontrolled motion from the start to the final time, at most once round."""
     orbit, case = found.elements, found.case
     if case.tf is None:
         return None
@@ -191,7 +191,7 @@ def _travelled(found: Survey) -> Array | None:
 
 
 def _ellipse(orbit: Elements) -> Array:
-    """Evenly in the eccentric anomaly, so that both ends of a long ellipse are smooth."""
+    """Return points of an ellipse, evenly in the eccentric anomaly, so that both ends are smooth."""
     assert orbit.semi_major_axis is not None
     angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
     across = np.sqrt(orbit.semi_major_axis * orbit.parameter)
@@ -202,7 +202,7 @@ def _ellipse(orbit: Elements) -> Array:
 
 
 def _open(orbit: Elements, reach: float) -> Array:
-    """A parabola or hyperbola up to a distance, evenly in the tangent of half the true anomaly."""
+    """Return points of a parabola or hyperbola up to a distance, evenly in the tangent of half the true anomaly."""
     e = orbit.eccentricity
     cosine = (orbit.parameter / reach - 1.0) / e
     last = np.sqrt(max(0.0, 1.0 - cosine) / (1.0 + cosine))
@@ -213,7 +213,7 @@ def _open(orbit: Elements, reach: float) -> Array:
 
 
 def _asymptotes(orbit: Elements, reach: float) -> tuple[Array, ...]:
-    """Rays from the centre of a hyperbola, which lies beyond its periapsis."""
+    """Return rays from the centre of a hyperbola, which lies beyond its periapsis."""
     assert orbit.semi_major_axis is not None
     e, middle = orbit.eccentricity, -orbit.semi_major_axis * orbit.eccentricity * orbit.towards
     rays = []

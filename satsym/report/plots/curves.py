@@ -1,4 +1,4 @@
-"""Curves in space that the pictures need, from a model's generated functions: path, thrust, relative motion."""
+"""Curves in space for pictures, from a model's generated functions: path, thrust, relative motion."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from satsym.kernels import Kernels
 from satsym.spec import ProblemSpec, Variable
 
 LARGEST_DRAWN = 1e100
-"""Beyond it a number is the debris of a failed run, and too large for arithmetic on axes."""
+"""Largest number that is drawn; larger ones come from failed runs."""
 _COMPLEX_STEP = 1e-30
 _REAL_STEP = 1e-5
 _COMMON_TOLERANCE = 1e-9
-"""Relative to the largest rate: what differs by less is the same motion."""
+"""Largest difference of equal rates, relative to the largest rate."""
 
 
 def clean(values: Array) -> Array:
-    """The values with NaN for whatever cannot be drawn."""
+    """Return the values with NaN for those that cannot be drawn."""
     array = np.array(values, dtype=float)
     with np.errstate(invalid="ignore"):
         array[~(np.abs(array) < LARGEST_DRAWN)] = np.nan
@@ -29,7 +29,7 @@ def clean(values: Array) -> Array:
 
 
 def states(model: Kernels, x: Array) -> Array:
-    """States up to where they leave their domain: what comes after that has no meaning. Shape (n, N+1)."""
+    """Return states until they leave their domain, after which they have no meaning; shape (n, N+1)."""
     rows = clean(x)
     positive = [i for i, state in enumerate(model.spec.states) if state.positive]
     with np.errstate(invalid="ignore"):
@@ -40,19 +40,19 @@ def states(model: Kernels, x: Array) -> Array:
 
 
 def path(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> Array:
-    """Position vectors along a trajectory, shape (2 or 3, N+1)."""
+    """Return position vectors along a trajectory, shape (2 or 3, N+1)."""
     with np.errstate(all="ignore"):
         return clean(model.position_batch(times, x, p))
 
 
 def reference(model: Kernels, times: Array, p: Sequence[float]) -> Array:
-    """States on the reference curve, shape (n, N+1)."""
+    """Return states on the reference curve, shape (n, N+1)."""
     with np.errstate(all="ignore"):
         return clean(model.reference_batch(times, p))
 
 
 def uncontrolled(model: Kernels, times: Array, x0: Sequence[float], p: Sequence[float]) -> Array:
-    """States of the uncontrolled motion at the nodes, shape (n, N+1), by at least a thousand steps."""
+    """Return states of the uncontrolled motion at the nodes, shape (n, N+1), by at least a thousand steps."""
     m, parts = len(model.spec.controls), -(-1000 // (len(times) - 1))
     fine = np.interp(np.arange((len(times) - 1) * parts + 1) / parts, np.arange(len(times)), times)
     rest = np.zeros((m, len(fine)))
@@ -61,13 +61,13 @@ def uncontrolled(model: Kernels, times: Array, x0: Sequence[float], p: Sequence[
 
 
 def angles(spec: ProblemSpec) -> frozenset[str]:
-    """States and controls that are angles: as they are declared, or as the control sets have it."""
+    """Return states and controls that are angles, by declaration or as members of an angle set."""
     declared = {v.symbol for v in (*spec.states, *spec.controls) if v.kind == "angle"}
     return frozenset(declared | {name for part in spec.control_parts if part.kind == "angle" for name in part.controls})
 
 
 def rests(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> bool:
-    """Whether controls that are zero do nothing: no angle then turns a part of the motion."""
+    """Tell whether zero controls have no effect, so that no angle turns a part of the motion."""
     if not _angles(model):
         return True
     with np.errstate(all="ignore"):
@@ -81,7 +81,7 @@ def _angles(model: Kernels) -> list[int]:
 
 
 def _opposite(model: Kernels, count: int) -> list[Array]:
-    """Controls of zero, and those with some of the angles turned by half a turn, shape (m, count) each."""
+    """Return zero controls, and those with some of the angles turned by half a turn, shape (m, count) each."""
     controls = model.spec.controls
     found: list[Array] = [np.zeros((len(controls), count))]
     for i in _angles(model):
@@ -93,14 +93,14 @@ def _opposite(model: Kernels, count: int) -> list[Array]:
 
 
 def _drift(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> Array:
-    """The dynamics without what the controls do, shape (n, N+1): what an angle turns cancels over half a turn."""
+    """Return the dynamics without control, shape (n, N+1); effects of angles cancel over half a turn."""
     return np.mean([model.dynamics_batch(times, x, u, p) for u in _opposite(model, x.shape[1])], axis=0)
 
 
 def thrust(
     model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float], place: Callable[[Array], Array] | None = None
 ) -> Array:
-    """What the controls do to the motion in space, shape (2 or 3, N+1): the acceleration they add.
+    """Return the acceleration in space that the controls add, shape (2 or 3, N+1).
 
     Parameters
     ----------
@@ -136,16 +136,16 @@ def thrust(
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """Motion relative to a moving reference point, in the curved coordinates of orbit work; arrays of shape (N+1,)."""
+    """A motion relative to a moving reference point, in curvilinear orbit coordinates; arrays of shape (N+1,)."""
 
     along: Array
-    """Distance ahead, along the circle through the reference point about the origin."""
+    """Distance ahead, along the circle about the origin through the reference point."""
     radial: Array
     """Distance above that circle."""
 
 
 def relative(positions: Array, reference: Array) -> Relative | None:
-    """Where a path is, seen from the reference point; nothing if that stands still or passes the origin.
+    """Return a path relative to the reference point; ``None`` if that stands still or passes the origin.
 
     Parameters
     ----------
@@ -170,14 +170,15 @@ def relative(positions: Array, reference: Array) -> Relative | None:
 
 
 NUDGE, EXACT = 0.1, 1e-12
-"""How far from the trajectory rates are compared, relative to the sizes of states, and how exactly."""
+"""Distance from the trajectory at which rates are compared, relative to the sizes of states, and their largest
+difference."""
 _NAME = re.compile(r"(?:|[pqrs]_?|pos_?)([xyz])")
 
 
 def pairs(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> list[tuple[int, int]]:
-    """States with those that are their rates: the motions in one degree of freedom each.
+    """Return states with the states that are their rates: motions in one degree of freedom each.
 
-    Rates are compared beside the trajectory, for on it states may agree that are not the same.
+    Rates are compared beside the trajectory, because different states may agree on it.
     """
     known = np.isfinite(x).all(axis=0) & np.isfinite(u).all(axis=0)
     if not known.any():
@@ -196,7 +197,7 @@ def pairs(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) 
 
 
 def polar(states: Sequence[Variable]) -> tuple[int, int] | None:
-    """The states that are a distance and an angle about the origin, by their names; or none."""
+    """Return the states that are a distance and an angle about the origin, by their names; or ``None``."""
     named = {state.symbol: i for i, state in enumerate(states)}
     distance = next((named[name] for name in ("r", "rho") if name in named), None)
     angle = next((named[name] for name in ("theta", "phi") if name in named), None)
@@ -206,7 +207,7 @@ def polar(states: Sequence[Variable]) -> tuple[int, int] | None:
 
 
 def places(states: Sequence[Variable], rated: Sequence[tuple[int, int]]) -> tuple[int, ...]:
-    """Two or three states that are the components of a position, by their names or because all have rates; or none."""
+    """Return two or three states that are components of a position, by names or because all have rates; or ``None``."""
     named = {match[1]: i for i, state in enumerate(states) if (match := _NAME.fullmatch(state.symbol))}
     by_rate = tuple(i for i, _ in rated)
     for found in (tuple(named[axis] for axis in "xyz" if axis in named), by_rate):
@@ -220,9 +221,10 @@ def places(states: Sequence[Variable], rated: Sequence[tuple[int, int]]) -> tupl
 def level(
     model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float], found: Sequence[int]
 ) -> tuple[int, ...]:
-    """Two coordinates in the order in which they are drawn: across first what the motion does not depend on.
+    """Return two coordinates in drawing order: first the one that the motion does not depend on.
 
-    Of a satellite near a circular orbit that is the distance along the track, of a body that falls the way it goes.
+    For a satellite near a circular orbit that is the distance along the track, for a falling body the horizontal
+    distance.
     """
     known = np.isfinite(x).all(axis=0) & np.isfinite(u).all(axis=0)
     if len(found) != 2 or not known.any():

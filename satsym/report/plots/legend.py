@@ -1,4 +1,4 @@
-"""One legend for a whole page, with what is really on it."""
+"""One legend for a whole page, with the kinds of lines that occur on it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HANDLE, CHARACTER = 0.62, 0.08
-"""Inches on a screen that the sign of an entry takes, and a character of its label on average."""
+"""Inches on a screen of the sample of an entry, and of an average character of its label."""
 PER_INCH = 0.71
-"""Entries side by side that an inch of a page has room for."""
+"""Number of entries side by side for each inch of a page."""
 Entry = tuple[Any, str]
 
 
 def motion(scene: Scene, colour: str) -> list[Entry]:
-    """The path itself, the reference and the uncontrolled motion."""
+    """Return entries for the path itself, the reference and the uncontrolled motion."""
     found = [(line(color=colour, **style.MAIN), scene.name)]
     if scene.reference is not None:
         found.append((line(**style.REFERENCE), say("reference")))
@@ -35,7 +35,7 @@ def motion(scene: Scene, colour: str) -> list[Entry]:
 
 
 def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
-    """What is counted from the reference, required ends, bounds and the time spent on them."""
+    """Return entries for references, required ends, bounds and the time spent at bounds."""
     from matplotlib.patches import Patch
 
     quantities, found = list(quantities), []
@@ -52,7 +52,7 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
 
 
 def _marked(quantities: Iterable[Series], colour: str) -> list[tuple[str, str]]:
-    """What the lines across mean, which have the colours of their curves."""
+    """Return entries for horizontal lines, which have the colours of their curves."""
     meant = {q.said for q in quantities if q.switching}
     return [
         *([(style.STATE, say("point on the way"))] if PASSED in meant else []),
@@ -61,7 +61,7 @@ def _marked(quantities: Iterable[Series], colour: str) -> list[tuple[str, str]]:
 
 
 def below(page: Figure, entries: list[Entry]) -> None:
-    """Put the legend below the axes; a single entry says nothing that the page does not."""
+    """Put the legend below the axes; a single entry is left out, since the page says as much."""
     entries = list({label: (handle, label) for handle, label in entries}.values())
     if len(entries) > 1:
         handles, labels = zip(*entries, strict=True)
@@ -74,19 +74,19 @@ def below(page: Figure, entries: list[Entry]) -> None:
 
 
 def _width(labels: Sequence[str], across: int) -> float:
-    """Inches on a screen that entries take in so many columns, which are filled one after the other."""
+    """Return the width of entries in a number of columns, filled one after the other, in inches on a screen."""
     rows = -(-len(labels) // across)
     columns = (labels[k : k + rows] for k in range(0, len(labels), rows))
     return sum(HANDLE + CHARACTER * max(map(_length, column)) for column in columns)
 
 
 def _length(label: str) -> int:
-    """Characters that are seen of a label; the names of signs in a formula are not."""
+    """Count the visible characters of a label; a sign in a formula counts as one."""
     return len(re.sub(r"\\[a-zA-Z]+|[${}^_\\]", "", label))
 
 
 def line(**look: Any) -> Any:
-    """What stands for a line or a marker in a legend."""
+    """Return the sample of a line or a marker in a legend."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **(look | {"clip_on": True}))

@@ -1,4 +1,4 @@
-"""Pages of pictures, of a motion and of how an answer was come to; none where there is nothing to show."""
+"""Pages of pictures, of a motion and of the iterations to an answer; none where there is nothing to show."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ ROW, PLANE = 2.2, 4.4
 
 
 def orbit(scene: Scene) -> Figure | None:
-    """The path in space; beside it, where it stays near the reference, the path seen from there."""
+    """Draw the path in space; if it stays near the reference, also relative to that."""
     shown = space.Orbit.of(scene)
     return None if shown is None or shown.by_states else _in_space(scene, shown)
 
 
 def path(scene: Scene) -> Figure | None:
-    """The path where states are its coordinates, of a model that has no position vector."""
+    """Draw the path whose coordinates are states, for a model without a position vector."""
     shown = space.Orbit.of(scene)
     return None if shown is None or not shown.by_states else _in_space(scene, shown)
 
@@ -64,7 +64,7 @@ def _in_space(scene: Scene, shown: space.Orbit) -> Figure:
 
 
 def phase(scene: Scene) -> Figure | None:
-    """The phase planes of a motion that is in no plane and in no space."""
+    """Draw the phase planes of a motion that is neither in a plane nor in space."""
     drawn = phase_planes.of(scene)
     if not drawn or space.Orbit.of(scene) is not None:
         return None
@@ -80,27 +80,27 @@ def phase(scene: Scene) -> Figure | None:
 
 
 def states(scene: Scene) -> Figure | None:
-    """Every state, with the reference and the uncontrolled motion."""
+    """Draw every state, with the reference and the uncontrolled motion."""
     return _multiples(scene, series.states(scene), style.STATE)
 
 
 def controls(scene: Scene) -> Figure | None:
-    """Every control, with its bounds and switching times."""
+    """Draw every control, with its bounds and switching times."""
     return _multiples(scene, series.controls(scene), style.CONTROL, columns=1)
 
 
 def constraints(scene: Scene) -> Figure | None:
-    """Every path constraint, with the time on its boundary and the times at which that is met and left."""
+    """Draw every path constraint, with the time on its boundary and its entries and exits."""
     return _multiples(scene, series.constraints(scene), style.INVARIANT, columns=1)
 
 
 def costates(scene: Scene) -> Figure | None:
-    """Every costate, and the Hamiltonian."""
+    """Draw every costate, and the Hamiltonian."""
     return _multiples(scene, series.costates(scene), style.COSTATE)
 
 
 def invariants(scene: Scene) -> Figure | None:
-    """What the uncontrolled motion keeps constant, and the control changes."""
+    """Draw the invariants of the uncontrolled motion, which the control changes."""
     return _multiples(scene, series.invariants(scene), style.INVARIANT, columns=1)
 
 
@@ -121,11 +121,11 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
 
 
 MOST_PANELS = 8
-"""States, and controls, that have a panel here; all of them are on pages of their own."""
+"""Largest number of states, and of controls, on this page; all of them are on pages of their own."""
 
 
 def overview(scene: Scene) -> Figure | None:
-    """Path, states and controls on one page under a line of facts; nothing without a trajectory."""
+    """Draw path, states and controls on one page under a line of facts; nothing without a trajectory."""
     if not scene.drawable:
         return None
     shown = space.Orbit.of(scene)
@@ -167,7 +167,7 @@ def _space(part: SubFigure, shown: space.Orbit) -> None:
 
 @dataclass(frozen=True)
 class _Heading:
-    """Title of the instance, and below it the facts of the result, on as many lines as the page needs."""
+    """The title of the instance, and below it the facts of the result, on as many lines as the page needs."""
 
     title: str
     facts: str
@@ -185,11 +185,11 @@ class _Heading:
 
     @property
     def height(self) -> float:
-        """In inches on a screen."""
+        """Return the height in inches on a screen."""
         return 0.75 + 0.3 * (self.title.count("\n") + self.facts.count("\n"))
 
     def write(self, part: SubFigure, status: Status) -> None:
-        """Put it on its part of a page, with the status of what is no answer."""
+        """Write the heading on its part of a page, with the status of an unsuccessful run."""
         edge = 0.12 / self.height
         bold: dict[str, Any] = {"fontweight": "bold"}
         part.text(0.012, 1.0 - edge, self.title, va="top", fontsize=style.points(14.0), parse_math=False, **bold)
@@ -215,13 +215,15 @@ def _facts(scene: Scene) -> list[str]:
 
 
 ANEW = 100.0
-"""A residual this many times the one before begins another phase."""
+"""Ratio of a residual to the one before it that begins another phase."""
 EXACT = 1e-16
-"""Relative to the largest: what is smaller is rounding, and fills no axis."""
+"""Smallest drawn value, relative to the largest; smaller ones are rounding."""
 
 
 def convergence(scene: Scene) -> Figure | None:
-    """Distance of the cost from the answer's, and the residual, over the iterations; nothing for fewer than three.
+    """Draw the distance of the cost from the final one, and the residual, over the iterations.
+
+    Nothing is drawn for fewer than three iterations.
 
     A quantity that has fewer than two values above rounding has no panel.
     """
@@ -260,7 +262,7 @@ def convergence(scene: Scene) -> Figure | None:
 
 
 def _of_cost(scene: Scene, last: float) -> tuple[str, str]:
-    """Title and label."""
+    """Return title and label of the panel on the cost."""
     unit, status = scene.spec.objective_unit or "1", scene.result.status
     if status.answered:
         final = f"{decimal(number(last, 10))} {unit_text(unit)}".rstrip()
@@ -272,13 +274,13 @@ def _of_cost(scene: Scene, last: float) -> tuple[str, str]:
 
 
 def _of_residual(phases: bool) -> tuple[str, str]:
-    """Title and label."""
+    """Return title and label of the panel on the residual."""
     whole, parts = "residual of the optimality conditions", "residual of the optimality conditions, phase by phase"
     return say(parts if phases else whole), say("residual")
 
 
 def _saturated(scene: Scene) -> Array:
-    """What controls on their bounds would cost along the trajectory, at each node: the scale of a cost that is zero."""
+    """Return the cost of saturated controls along the trajectory, at each node: the scale of a zero cost."""
     ends = np.array([scene.instance.lower, scene.instance.upper])
     most = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=0)
     if not len(scene.nodes):
@@ -294,13 +296,13 @@ def _largest(values: ArrayLike) -> float:
 
 
 def _above_rounding(values: Array, size: float) -> Array:
-    """Values with NaN for those that are nothing but rounding errors of something so large."""
+    """Return values with NaN for those that are rounding errors of something of this size."""
     with np.errstate(invalid="ignore"):
         return np.where(values > EXACT * size, values, np.nan)
 
 
 def _decades(axes: Axes, at: Array, values: Array, begun: NDArray[np.intp], colour: str) -> None:
-    """Positive values on a logarithmic axis, joined within a phase; what is not finite is left out."""
+    """Draw positive values on a logarithmic axis, joined within a phase, without values that are not finite."""
     from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
     axes.set_yscale("log")

@@ -1,4 +1,4 @@
-"""One quantity against time, in axes of its own: the piece that most pictures are made of."""
+"""Panels of one quantity against time, of which most pictures consist."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 MOST_TIMES = 4
 ROUND = [1, 2, 5, 10]
-"""Leading digits of the distance between ticks."""
+"""Leading digits of the distances between ticks."""
 
 
 def small_multiples(
@@ -33,7 +33,7 @@ def small_multiples(
     columns: int,
     title: float = 0.0,
 ) -> None:
-    """Draw quantities, each in its colour, in rows over a common time; a last one that is alone fills its row."""
+    """Draw quantities, each in its colour, in rows over a common time; a single last one fills its row."""
     rows = -(-len(quantities) // columns)
     grid = part.add_gridspec(rows, columns)
     shown = _read(quantities)
@@ -50,7 +50,7 @@ def small_multiples(
 
 
 def _read(quantities: Sequence[tuple[Series, str]]) -> list[Reading]:
-    """Return readings of which those of each colour have one unit, where they can."""
+    """Return readings in which quantities of one colour share a unit, where they can."""
     shown: dict[int, Reading] = {}
     for colour in dict.fromkeys(colour for _, colour in quantities):
         places = [i for i, (_, own) in enumerate(quantities) if own == colour]
@@ -59,7 +59,7 @@ def _read(quantities: Sequence[tuple[Series, str]]) -> list[Reading]:
 
 
 def against_time(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: str, title: float = 0.0) -> None:
-    """Draw a quantity.
+    """Draw a quantity against time.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def against_time(axes: Axes, scene: Scene, series: Series, shown: Reading, colou
 
 
 def ticks(axis: Axis, shown: Reading) -> None:
-    """Few, round ticks; multiples of pi for an angle that turns."""
+    """Set few, round ticks; multiples of pi for an angle that turns."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
     if not shown.turns:
@@ -109,7 +109,7 @@ def ticks(axis: Axis, shown: Reading) -> None:
 
 
 def _remark(scene: Scene, series: Series, shown: Reading) -> str:
-    """The switching times of a quantity, or where it ends."""
+    """Return the remark on a quantity: its switching times, or its final value."""
     if series.switching:
         times = [number(time, 4) for time in series.switching[:MOST_TIMES]]
         more = ", \N{HORIZONTAL ELLIPSIS}" if len(series.switching) > MOST_TIMES else ""
@@ -133,7 +133,7 @@ def _of_pi(multiple: float) -> str:
 
 
 def _bounds(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: str) -> None:
-    """Hatch what is not allowed, shade the time spent on a bound, mark the switching times."""
+    """Hatch what is not admissible, shade the time spent at a bound, mark the switching times."""
     for bound, beyond in ((shown.lower, shown.low), (shown.upper, shown.high)):
         if shown.low <= bound <= shown.high:
             axes.axhspan(bound, beyond, **style.FORBIDDEN)
@@ -149,7 +149,7 @@ def _bounds(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: st
 
 
 def forbidden(axes: Axes, scene: Scene, series: Series, shown: Reading) -> None:
-    """Hatch what path constraints do not allow, over time."""
+    """Hatch what path constraints forbid, over time."""
     if not series.forbidden:
         return
     rows = np.linspace(shown.low, shown.high, style.GRID)[:, None] + np.zeros_like(scene.times)
@@ -158,6 +158,6 @@ def forbidden(axes: Axes, scene: Scene, series: Series, shown: Reading) -> None:
 
 
 def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last index of each run of true values that is longer than one."""
+    """Return the first and last index of each run of at least two true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > 1]

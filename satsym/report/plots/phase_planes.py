@@ -1,4 +1,4 @@
-"""A state against its rate."""
+"""Phase planes: a state against its rate."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ROOM = 0.15
-"""Beside a path, relative to its width, for the switching curve to go on in."""
+"""Space beside a path, relative to its width, for the continuation of the switching curve."""
 MOST_PLANES = 4
-"""Planes that are drawn; states over time show more than a page of many of them."""
+"""Largest number of phase planes that are drawn."""
 
 
 Field: TypeAlias = Callable[[Array, Array], Array]
-"""From values of the two states."""
+"""A function of the values of the two states."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Two states, as they are shown."""
+    """A phase plane of two states, as they are shown."""
 
     across: Reading
     up: Reading
     forbidden: tuple[Field, ...] = ()
-    """What path constraints forbid that depend on these two states alone."""
+    """Path constraints that depend on these two states alone."""
     switching: Field | None = None
-    """Zero on the switching curve of a problem of least time, where it is known in closed form."""
+    """A function that is zero on a known switching curve of a minimum-time problem; ``None`` without one."""
     passed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     """Points on the way, as they are shown."""
 
     @property
     def target(self) -> tuple[float, float] | None:
-        """Where the motion has to end, if both are given."""
+        """Return the final point of the motion, if both values are given."""
         if self.across.target is None or self.up.target is None:
             return None
         return self.across.target, self.up.target
@@ -62,7 +62,7 @@ def of(scene: Scene) -> list[Plane]:
 
 
 def _plane(scene: Scene, i: int, j: int, across: Reading, up: Reading) -> Plane:
-    """Two states with what is drawn behind their path."""
+    """Return the plane of two states, with what is drawn behind their path."""
     if isinstance(across.datum, np.ndarray) or isinstance(up.datum, np.ndarray):
         return Plane(across, up)  # deviations from a reference that moves
 
@@ -75,7 +75,7 @@ def _plane(scene: Scene, i: int, j: int, across: Reading, up: Reading) -> Plane:
 
 
 def _switching(scene: Scene, i: int, j: int) -> Field | None:
-    """How far a position lies beyond the switching curve, by position and rate."""
+    """Return how far a position lies beyond the switching curve, by position and rate."""
     case, spec = scene.instance, scene.spec
     if tuple(spec.switching_curve) != (spec.states[i].symbol, spec.states[j].symbol):
         return None
@@ -113,7 +113,7 @@ def entries(planes: list[Plane]) -> list[legend.Entry]:
 
 
 def draw(axes: Axes, plane: Plane) -> None:
-    """Draw a plane."""
+    """Draw a phase plane."""
     across, up = plane.across, plane.up
     for limits, one in ((axes.set_xlim, across), (axes.set_ylim, up)):
         room = ROOM * (one.high - one.low) if plane.switching is not None else 0.0

@@ -50,18 +50,18 @@ EXACT: dict[str, Any] = {
     "zorder": 3.5,
 }
 MARGIN = 1.25
-"""Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
+"""Half the width of the axes, relative to the farthest eigenvalue."""
 SIDE = 6.6
 """Side of the page, in inches."""
 FURTHEST_ON_A_SCALE, NOUGHT = 100.0, 1e-8
-"""How many times further from zero than the nearest eigenvalue the furthest lies where decades are as long as each
-other, and relative to the furthest what counts as zero, being so by rounding only."""
+"""Ratio of the farthest to the nearest eigenvalue above which decades have equal lengths, and the fraction of the
+farthest below which an eigenvalue is zero up to rounding."""
 MARKED = 3
-"""Largest number of decades that are named on each side."""
+"""Largest number of labelled decades on each side."""
 
 
 def of_analysis(found: Analysis) -> Figure:
-    """The eigenvalues of a model, with their multiplicities."""
+    """Draw the eigenvalues of a model, with their multiplicities."""
     spec = found.about.model.spec
     page = style.titled(spec.title, SIDE, SIDE)
     axes = page.subplots()
@@ -72,7 +72,7 @@ def of_analysis(found: Analysis) -> Figure:
 
 
 def of_design(design: Design) -> Figure:
-    """The eigenvalues before and after the loop is closed."""
+    """Draw the eigenvalues of the open and the closed loop."""
     page = style.titled(design.title, SIDE, SIDE + 0.3)
     axes = page.subplots()
     axes.set_title(say("eigenvalues"))
@@ -96,7 +96,7 @@ def loops(axes: Axes, design: Design, with_notes: bool = True) -> None:
 
 
 def of_point(found: Survey) -> Figure:
-    """The eigenvalues at the start of an orbit, beside their closed form, and the verdict of the rule of the signs."""
+    """Draw the eigenvalues at the start of an orbit, with their closed form and the verdict of the sign rule."""
     case, point = found.case, found.point
     page = style.titled(case.title or case.name, SIDE, SIDE + 0.5)
     axes = page.subplots()
@@ -119,7 +119,7 @@ def of_point(found: Survey) -> Figure:
 
 
 def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "") -> float:
-    """Draw the plane with its left half named, and give the model's units of time in that of the axes."""
+    """Draw the plane with its left half named; return the model's unit of time in that of the axes."""
     furthest = float(np.abs(values).max()) or 1.0
     units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
     factor, unit = display.time_scale(units, 2.0 * np.pi / furthest)
@@ -142,7 +142,7 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "")
 
 
 def _decades(axes: Axes, nearest: float, furthest: float) -> float:
-    """Scale both axes by decades from the nearest on, so that no eigenvalues lie on one another; how far they reach."""
+    """Scale both axes by decades from the nearest eigenvalue on, so that none overlap; return the range."""
     first, last = (int(np.floor(np.log10(size))) for size in (nearest, furthest))
     shown = range(last, first - 1, -max(1, -(-(last - first) // MARKED)))
     ticks = [sign * 10.0**power for sign in (-1.0, 1.0) for power in shown]
@@ -157,7 +157,7 @@ def _decades(axes: Axes, nearest: float, furthest: float) -> float:
 
 
 def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float, with_notes: bool = True) -> None:
-    """Circles, with the sizes of the Jordan blocks beside those that are multiple."""
+    """Draw open-loop eigenvalues as circles, with the sizes of Jordan blocks beside multiple ones."""
     for each in found:
         at = (each.value.real * factor, each.value.imag * factor)
         axes.plot([at[0]], [at[1]], **OPEN)
@@ -194,7 +194,7 @@ TURN = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 def of_multipliers(found: Survey) -> Figure | None:
-    """All of the unit circle, and beside it what there is to see at 1; nothing where there are no multipliers."""
+    """Draw the unit circle, and beside it the neighbourhood of 1; nothing without multipliers."""
     floquet = found.floquet
     if floquet.multipliers is None or floquet.scatter is None or floquet.expected_scatter is None:
         return None
@@ -227,7 +227,7 @@ def _whole(axes: Axes, multipliers: Any) -> None:
 
 
 def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
-    """Distances from 1; the unit circle is a straight line at this scale unless errors are large."""
+    """Draw distances from 1; the unit circle is a straight line at this scale unless errors are large."""
     _square(axes, reach)
     # 1 - cos without cancellation; the part of the circle within reach
     angle = np.linspace(-1.0, 1.0, 401) * min(np.pi, 2.0 * reach)

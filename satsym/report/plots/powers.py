@@ -1,4 +1,4 @@
-"""Ticks that carry their power of ten themselves, instead of one beyond the end of the axis. Loads matplotlib."""
+"""Ticks with their own power of ten, instead of one at the end of the axis. Loads matplotlib."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from satsym.report.display import number, times_ten_to
 from satsym.report.said import decimal
 
 PLAIN = 1e-3, 1e6
-"""Between these the largest tick needs no power of ten."""
+"""Range of the largest tick within which no power of ten is used."""
 
 
 class WithPowers(ScalarFormatter):
-    """Numbers such as 2 × 10⁻¹²; plain ones where these are short."""
+    """A formatter for numbers such as 2 × 10⁻¹²; short numbers are plain."""
 
     def __init__(self) -> None:
         super().__init__(useOffset=False)
@@ -23,7 +23,7 @@ class WithPowers(ScalarFormatter):
         self._power = 0
 
     def set_locs(self, locs: Iterable[float]) -> None:
-        """Take all ticks, which matplotlib tells before it asks for the text of each."""
+        """Take all ticks, which matplotlib passes before it requests the text of each."""
         places = list(locs)
         super().set_locs(places)
         largest = max((abs(place) for place in places), default=0.0)
@@ -31,7 +31,7 @@ class WithPowers(ScalarFormatter):
         self._power = 0 if plain else math.floor(math.log10(largest))
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        """The text of a tick."""
+        """Return the text of a tick."""
         if not self._power:
             return decimal(str(super().__call__(x, pos)))
         return decimal(number(x / 10.0**self._power, 4)) + times_ten_to(self._power) if x else "0"

@@ -1,4 +1,4 @@
-"""How the numbers of a quantity become numbers on an axis that a person can read. Draws nothing."""
+"""Readable numbers on axes for quantities of any size and offset. This module draws nothing."""
 
 from __future__ import annotations
 
@@ -13,57 +13,58 @@ from satsym.report.display import Scale, labelled, together
 from satsym.report.plots.series import Series
 
 SMALL_DEVIATION = 0.02
-"""A deviation smaller than this fraction of the value is shown itself: in the value it could not be seen."""
+"""Fraction of the value below which a deviation is shown itself, because it would be invisible in the value."""
 BURIED = 1e-3
-"""A variation smaller than this fraction of the value is counted from the first value: ticks would need many digits."""
+"""Fraction of the value below which a variation is counted from the first value, since ticks would need many digits."""
 FURTHEST, GLIMPSE = 3.0, 0.4
-"""Beside the main curve all is shown up to so many of its widths; of what goes beyond, only so many."""
+"""Distance beside the main curve, in its widths, up to which everything is shown; and the width shown of what is
+farther."""
 IN_SIGHT = 2.0
-"""A bound is in sight if it is no further off than so many widths of the rest."""
+"""Largest distance at which a bound is shown, in widths of the rest."""
 LEVELS = 400
-"""Values among which it is looked for where what is forbidden begins."""
+"""Number of values at which the edge of a forbidden region is searched."""
 ROUNDING = 1e-9
-"""Variation below this fraction of the size is taken for none."""
+"""Fraction of the size below which a variation counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """A quantity as it is shown."""
+    """A quantity in the form in which it is shown."""
 
     label: str
-    """Symbol with the unit that all numbers are in."""
+    """Symbol with the unit of all numbers."""
     values: Array
     reference: Array | None
     free: Array | None
     target: float | None
     lower: float
     upper: float
-    """Values as in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum."""
+    """Values and bounds as in :class:`~satsym.report.plots.series.Series`, in that unit and relative to the datum."""
     low: float
     high: float
-    """Ends of the axis."""
+    """Lower and upper end of the axis."""
     deviation: bool
     """Whether the reading is the deviation from the reference."""
     turns: bool
-    """Whether to mark multiples of pi."""
+    """Whether multiples of pi are marked."""
     scale: float
     datum: Array | float
-    """What is shown is the value less the datum, times the scale."""
+    """The shown value is the scale times the difference of value and datum."""
 
     def value(self, shown: Array) -> Array:
-        """The quantity itself, of what is shown; along the last axis at the nodes where the datum has them."""
+        """Return the quantity of a shown value; the last axis counts nodes if the datum does."""
         return shown / self.scale + self.datum
 
 
 @dataclass(frozen=True, eq=False)
 class _Counted:
-    """A quantity in the unit of its series or in degrees, counted from its datum."""
+    """A quantity in the unit of its series or in degrees, relative to its datum."""
 
     series: Series
     symbol: str
     unit: str
     factor: float
-    """From the unit of the series."""
+    """Ratio of the series' unit to the shown unit."""
     datum: Array | float
     low: float
     high: float
@@ -89,18 +90,18 @@ class _Counted:
 
     @property
     def from_datum(self) -> bool:
-        """Whether the reading is counted from another value than zero."""
+        """Tell whether the reading is relative to a value other than zero."""
         return self.deviation or bool(np.any(self.datum))
 
     @property
     def furthest(self) -> float:
-        """The end of the axis that is further from zero; none of a quantity that is nothing but rounding errors."""
+        """Return the end of the axis farther from zero; none for a quantity of rounding errors only."""
         series = self.series
         flat = _size((series.values - self.datum) * self.factor) <= ROUNDING * series.size * self.factor
         return 0.0 if flat else max(abs(self.low), abs(self.high))
 
     def shown(self, measure: Scale) -> Reading:
-        """Return the series as it is shown, in a unit."""
+        """Return the series in a unit, as it is shown."""
         scale, series, datum = 1.0 / measure.divisor, self.series, self.datum
 
         def placed(values: Array | None) -> Array | None:
@@ -125,9 +126,9 @@ class _Counted:
 
 
 def read(quantities: Sequence[Series]) -> list[Reading]:
-    """Choose what to show: the deviation where the value hides it, its unit, and the ends of the axis.
+    """Choose what is shown: the deviation where the value hides it, its unit, and the ends of the axis.
 
-    Those with one unit keep one, so that the components of a vector can be compared.
+    Quantities with one unit keep a common one, so that the components of a vector can be compared.
     """
     counted = [_Counted.of(each) for each in quantities]
     measures: dict[int, Scale] = {}
@@ -141,7 +142,7 @@ def read(quantities: Sequence[Series]) -> list[Reading]:
 
 
 def within_reach(excess: float, width: float, furthest: float = FURTHEST) -> float:
-    """How much an axis may grow for what is drawn beside the main curve: for all of it, or if that is too far, a bit.
+    """Return how far an axis is extended for what is drawn beside the main curve: fully, or a little if that is far.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def within_reach(excess: float, width: float, furthest: float = FURTHEST) -> flo
 
 
 def _datum(series: Series, size: float) -> tuple[Array | float, bool]:
-    """What to count from: the reference, the first value, or zero."""
+    """Return the value that a series is relative to: the reference, the first value, or zero."""
     reference, known = series.reference, _known(series.values)
     if series.from_first:
         return float(known[0]), False
@@ -168,7 +169,7 @@ def _datum(series: Series, size: float) -> tuple[Array | float, bool]:
 
 
 def _ends(series: Series, shown: Array, datum: Array | float, factor: float, size: float) -> tuple[float, float]:
-    """Ends of the axis: all of the values, and of what is drawn beside them as much as leaves them readable."""
+    """Return the ends of the axis: all of the values, and of the rest as much as leaves them readable."""
     core = _known(shown)
     low, high = float(core.min()), float(core.max())
     if series.target is not None:
@@ -197,7 +198,7 @@ def _ends(series: Series, shown: Array, datum: Array | float, factor: float, siz
 
 
 def _edges(series: Series, low: float, high: float, reach: float, datum: Array | float, factor: float) -> list[float]:
-    """Where what is forbidden begins, on each side of what is shown; none that is out of sight."""
+    """Return the edges of forbidden regions on each side of what is shown, if they are in sight."""
     if not series.forbidden or not math.isfinite(reach):
         return []
     shown = np.linspace(low - IN_SIGHT * reach, high + IN_SIGHT * reach, LEVELS)
@@ -213,7 +214,7 @@ def _edges(series: Series, low: float, high: float, reach: float, datum: Array |
 
 
 def _known(values: Array) -> Array:
-    """The finite ones; a zero where there is none."""
+    """Return the finite values; a zero where there are none."""
     known = values[np.isfinite(values)]
     return known if known.size else np.zeros(1)
 

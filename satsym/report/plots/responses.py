@@ -1,4 +1,4 @@
-"""Responses to a disturbance as small multiples, and from how far the linear law works."""
+"""Responses to a disturbance as small multiples, and the distances from which the linear law works."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": 
 SMALL_ROW = 1.7
 """Height of a row of panels on a page that cannot grow downwards, in inches on a screen."""
 ROOM_BEYOND = 1.5
-"""How far beyond the linear response a nonlinear one is shown, relative to its width."""
+"""Width shown beyond the linear response for a nonlinear one, relative to its width."""
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A quantity by the linear system, and by the exact motion where that is another."""
+    """A quantity by the linear system, and by the exact motion where that differs."""
 
     what: Variable
     linear: Array
     exact: Array | None
     colour: str
     title: str
-    """Under which law it is."""
+    """The control law of the curve."""
     prefix: str = ""
     """Prefix of the symbol of the curve."""
 
@@ -59,7 +59,7 @@ class Curve:
 
     @property
     def apart(self) -> Array | None:
-        """What the exact motion has more, where one curve hides the other; nothing where both are seen or the same."""
+        """Return the difference of the exact motion, where one curve hides the other; else ``None``."""
         if self.exact is None:
             return None
         found, width = curves.clean(self.exact - self.linear), float(np.ptp(self.linear))
@@ -69,7 +69,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Responded:
-    """What a disturbance does to each quantity, and times in a readable unit."""
+    """The responses of each quantity to a disturbance, with times in a readable unit."""
 
     times: Array
     unit: str
@@ -80,7 +80,7 @@ class Responded:
 
     @classmethod
     def of(cls, design: Design, case: Instance) -> Responded:
-        """The states without control and with the gain, the inputs, and what they cost."""
+        """Return the states without control and with the gain, the inputs, and the cost."""
         found, spec, names = responses(design, case), design.about.model.spec, design.regulator.system.inputs
         units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
         factor, unit = display.time_scale(units, float(np.ptp(found.times)))
@@ -111,7 +111,7 @@ class Responded:
 
 
 def page(design: Design, seen: Responded) -> Figure:
-    """Each state without control and with the gain, side by side; below them the inputs, and what they cost."""
+    """Draw each state without control and with the gain, side by side; below them inputs and cost."""
     n, m = len(seen.free), len(seen.inputs)
     if style.sheet().highest < style.HIGHEST:
         return _beside(design, seen)
@@ -140,7 +140,7 @@ def page(design: Design, seen: Responded) -> Figure:
 
 
 def _beside(design: Design, seen: Responded) -> Figure:
-    """Draw the responses on a page that cannot grow downwards, with as many side by side as it takes."""
+    """Draw the responses side by side on a page that cannot grow downwards."""
     shown = [*seen.free, *seen.steered, *seen.inputs, seen.cost]
     columns = style.columns(len(shown), 2, SMALL_ROW, 1.4)
     rows = -(-len(shown) // columns)
@@ -159,7 +159,7 @@ def _beside(design: Design, seen: Responded) -> Figure:
 
 
 def _told_apart(figure: Figure, seen: Responded) -> None:
-    """A legend, where there is more than the linear response."""
+    """Draw a legend, where there is more than the linear response."""
     if seen.cost.exact is not None:
         entries = [
             (legend.line(color=style.SOFT, **LINEAR), say("linear")),
@@ -169,7 +169,7 @@ def _told_apart(figure: Figure, seen: Responded) -> None:
 
 
 def differences(design: Design, seen: Responded) -> Figure | None:
-    """What the exact motion has more than the linear one, where their curves are one; nothing where none are."""
+    """Draw the differences of the exact from the linear motion, where their curves coincide."""
     sides = [[*seen.free, seen.cost], [*seen.steered, *seen.inputs]]
     hidden = [[(one, apart) for one in side if (apart := one.apart) is not None] for side in sides]
     columns = [side for side in hidden if side] if style.across(2) == 2 else [[*hidden[0], *hidden[1]]]
@@ -201,7 +201,7 @@ def _measures(shown: Sequence[Curve]) -> list[display.Scale]:
 
 
 def _draw(axes: Axes, times: Array, curve: Curve, measure: display.Scale, apart: bool = False) -> None:
-    """A quantity by the linear system, and by the exact motion as far as it is near that; or one minus the other."""
+    """Draw a quantity by the linear system, and by the exact motion while it is near; or their difference."""
     what, (low, high) = curve.what, curve.ends
     exact = None if curve.exact is None else curves.clean(curve.exact)
     scale = measure.divisor
@@ -218,7 +218,7 @@ def _draw(axes: Axes, times: Array, curve: Curve, measure: display.Scale, apart:
 
 
 def reach(design: Design, case: Instance) -> Figure | None:
-    """How far each state alone may be off for the exact motion to return; nothing where only a linear one is known."""
+    """Draw how far each state alone may deviate so that the exact motion returns; nothing for linear models."""
     from satsym.analysis.regulator.responses import region_of_attraction
 
     regulator = design.regulator
@@ -239,7 +239,7 @@ def reach(design: Design, case: Instance) -> Figure | None:
 
 
 def _delta(design: Design) -> str:
-    """What marks a deviation; the states of a linear model are deviations themselves."""
+    """Return the mark of a deviation; the states of a linear model are deviations themselves."""
     return "" if design.about.model.spec.linear else r"\Delta "
 
 

@@ -1,4 +1,4 @@
-"""A result made ready for drawing: trajectories, what is drawn beside them, and readable times."""
+"""A result prepared for drawing: trajectories, what is drawn beside them, and readable times."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
 ROUNDING = 1e-9
-"""Relative to the reference: what is nearer to it is on it."""
+"""Largest distance from the reference, relative to its size, at which a state is on it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A solution or a simulation, and what is drawn beside it."""
+    """A solution or a simulation, with what is drawn beside it."""
 
     result: Solution | Simulation
     """What was solved or simulated."""
     name: str
-    """What its motion is called in a legend."""
+    """Name of the motion in a legend."""
     times: Array
     time_unit: str
-    """Nodes in a readable unit, ``"1"`` where the model counts time in none."""
+    """Nodes in a readable unit, and that unit, ``"1"`` where the model has no unit of time."""
     time_factor: float
-    """Model units of time in that unit."""
+    """Number of model units of time in that unit."""
     x: Array
     u: Array
     lam: Array | None
@@ -76,37 +76,37 @@ class Scene:
 
     @property
     def title(self) -> str:
-        """What the instance is about, in a line."""
+        """Return the subject of the instance in one line."""
         return display.raised(say(self.instance.title or self.spec.title) or self.instance.name)
 
     @property
     def nodes(self) -> Array:
-        """Nodes in the model's unit of time."""
+        """Return the nodes in the model's unit of time."""
         return np.asarray(self.result.times, dtype=float)
 
     @property
     def coasting(self) -> bool:
-        """Whether there is no control at any time."""
+        """Tell whether there is no control at any time."""
         return _coasts(self.result)
 
     @property
     def drawable(self) -> bool:
-        """Whether there is any trajectory to see."""
+        """Tell whether there is any trajectory to draw."""
         return len(self.times) > 1 and int(np.isfinite(self.x).all(axis=0).sum()) > 1
 
     @cached_property
     def rated(self) -> list[tuple[int, int]]:
-        """Places of states, and of those that are their rates."""
+        """Return the places of states, and of the states that are their rates."""
         return curves.pairs(self.instance.model, self.nodes, self.x, self.u, self.instance.parameters)
 
     @cached_property
     def restrictions(self) -> list[restrictions.Restriction]:
-        """Path constraints on states alone."""
+        """Return the path constraints on states alone."""
         return restrictions.of(self.instance, self.nodes, self.x, self.u)
 
     @property
     def passed(self) -> tuple[float, ...]:
-        """Times, in the model's unit, at which points on the way are passed."""
+        """Return the times, in the model's unit, at which points on the way are passed."""
         return tuple(event.t for event in getattr(self.result, "events", ()) if event.kind == "interior")
 
     @property
@@ -123,7 +123,7 @@ def _name(result: Solution | Simulation) -> str:
 
 
 def _free(result: Solution | Simulation, nodes: Array, x: Array, reference: Array | None) -> Array | None:
-    """States of the uncontrolled motion, where there is one that is not drawn already."""
+    """Return states of the uncontrolled motion, unless that is drawn already."""
     model, p = result.instance.model, result.instance.parameters
     if _coasts(result) or not curves.rests(model, nodes, x, p):
         return None

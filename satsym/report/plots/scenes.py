@@ -1,4 +1,4 @@
-"""The path in space, and seen from the reference."""
+"""Pictures of the path in space, and relative to the reference."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
 ARROWS = 32
 MOST_VIEWS = 4
 FREE = 1.5
-"""Up to so many widths of the path the uncontrolled motion is shown whole."""
+"""Size of the uncontrolled motion, in widths of the path, up to which all of it is shown."""
 LENGTH = 0.4
 """Largest length of the axes of space, relative to half the size of the picture."""
 LONGEST_ARROW = 0.13
 """Length of the longest arrow, relative to the size of the picture."""
 CLOSED = 0.05
-"""How near to its start, relative to its size, a curve is taken to close."""
+"""Distance of the end from the start of a curve, relative to its size, at which it counts as closed."""
 NEIGHBOURHOOD = 0.3
-"""Up to this distance from the reference, relative to the orbit, the path is also shown from the reference."""
+"""Largest distance from the reference, relative to the orbit, of a path that is also shown relative to it."""
 MOVED = 1e-4
-"""By how much, relative to its size or to one, a state is changed to see whether the place depends on it."""
+"""Change of a state, relative to its size or to one, that shows whether the place depends on it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """Curves in space, shape (2 or 3, N+1) each, and the path seen from the reference."""
+    """Curves in space, shape (2 or 3, N+1) each, and the path relative to the reference."""
 
     unit: str
     labels: tuple[str, ...]
@@ -50,27 +50,27 @@ class Orbit:
     relative: curves.Relative | None
     free_relative: curves.Relative | None
     ends_there: bool
-    """Whether the end is asked for, at the place of the reference."""
+    """Whether the motion is required to end at the place of the reference."""
     central: bool = True
     """Whether the motion is about the origin."""
     by_states: bool = False
-    """Whether states tell where it is, and no position vector."""
+    """Whether the place follows from states, without a position vector."""
     target: Array | None = None
     """Where the motion has to end, shape (2 or 3, 1)."""
     around: Surroundings = NOTHING
     thrusts: bool = True
-    """Whether what the controls add is called thrust."""
+    """Whether the effect of the controls is called thrust."""
 
     @classmethod
     def of(cls, scene: Scene) -> Orbit | None:
-        """The curves of a scene; nothing if neither the model nor its states tell a place in a plane or in space."""
+        """Return the curves of a scene; ``None`` if neither model nor states give a place in a plane or in space."""
         if not scene.drawable:
             return None
         return cls._of_position(scene) if len(scene.spec.position) in (2, 3) else cls._of_states(scene)
 
     @classmethod
     def _of_states(cls, scene: Scene) -> Orbit | None:
-        """A path whose coordinates are states."""
+        """Return a path whose coordinates are states."""
         states = scene.spec.states
         if (about := curves.polar(states)) is not None:
             return cls._of_polar(scene, *about)
@@ -100,7 +100,7 @@ class Orbit:
 
     @classmethod
     def _of_polar(cls, scene: Scene, distance: int, angle: int) -> Orbit:
-        """A path by a distance and an angle, which are states."""
+        """Return a path by a distance and an angle, which are states."""
 
         def path(x: Array) -> Array:
             return np.array([x[distance] * np.cos(x[angle]), x[distance] * np.sin(x[angle])])
@@ -126,7 +126,7 @@ class Orbit:
 
     @classmethod
     def _of_position(cls, scene: Scene) -> Orbit:
-        """A path by the position vector of the model."""
+        """Return a path by the position vector of the model."""
         position = scene.spec.position
         model, p = scene.instance.model, scene.instance.parameters
 
@@ -153,7 +153,7 @@ class Orbit:
 
     @property
     def views(self) -> list[View]:
-        """From where to look at it, the most telling view first: what is in no plane of coordinates from aside."""
+        """Return the views, the most informative first; a path in no plane of coordinates has an oblique one."""
         found = views([c for c in (self.path, self.reference, self.free) if c is not None], self.labels)
         return found if len(found) == 1 else [from_aside(self.labels), *found[: MOST_VIEWS - 1]]
 
@@ -219,7 +219,7 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
 
 
 def _without_ticks(axes: Axes, orbit: Orbit, view: View, half: float, unit: str) -> None:
-    """In place of ticks the axes of space, of a round length, at the lower left."""
+    """Draw the axes of space, of a round length, at the lower left in place of ticks."""
     length = _round_below(LENGTH * half)
     corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + half * np.array([0.25, 0.12])
     for label, way in zip(orbit.labels, view.axes.T, strict=True):
@@ -236,13 +236,13 @@ def _without_ticks(axes: Axes, orbit: Orbit, view: View, half: float, unit: str)
 
 
 def _round_below(size: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is not larger."""
+    """Return the largest of 1, 2 and 5 times a power of ten that is not larger."""
     power = 10.0 ** math.floor(math.log10(size))
     return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= size)
 
 
 def from_reference(axes: Axes, orbit: Orbit) -> None:
-    """Draw the path as it is seen from the reference: ahead to the right, outwards up."""
+    """Draw the path relative to the reference: ahead to the right, outwards up."""
     assert orbit.relative is not None
     curve = np.vstack([orbit.relative.along, orbit.relative.radial])
     others: list[Array] = [np.zeros((2, 1))]
@@ -268,7 +268,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
 
 
 def _added(scene: Scene, place: Callable[[Array], Array]) -> Array | None:
-    """The acceleration that the controls add to a motion whose states tell where it is; nothing where they add none."""
+    """Return the acceleration that the controls add to a motion whose states are places; ``None`` without one."""
     if scene.coasting:
         return None
     model, p = scene.instance.model, scene.instance.parameters
@@ -277,12 +277,12 @@ def _added(scene: Scene, place: Callable[[Array], Array]) -> Array | None:
 
 
 def _thrusts(scene: Scene) -> bool:
-    """Whether the model says of a control that it is thrust."""
+    """Tell whether the model calls a control thrust."""
     return any("thrust" in control.meaning for control in scene.spec.controls)
 
 
 def _polar(scene: Scene, path: Array) -> tuple[int, int] | None:
-    """The states that are a distance and an angle of the position vector, if some are."""
+    """Return the states that are a distance and an angle of the position vector, if any are."""
     found = curves.polar(scene.spec.states)
     if found is None or len(path) != 2:
         return None
@@ -292,7 +292,7 @@ def _polar(scene: Scene, path: Array) -> tuple[int, int] | None:
 
 
 def _on_reference(scene: Scene) -> bool:
-    """Whether all given final states are those of the reference, and there are some."""
+    """Tell whether all given final states, at least one, are those of the reference."""
     if scene.reference is None or not scene.instance.final:
         return False
     given = [(v, series.target(scene, i)) for i, v in enumerate(scene.reference[:, -1])]
@@ -300,7 +300,7 @@ def _on_reference(scene: Scene) -> bool:
 
 
 def _placed(scene: Scene, path: Callable[[Array], Array]) -> bool:
-    """Whether no state that is free at the end moves the end along the reference or away from its centre."""
+    """Tell whether no free final state moves the end along the reference or away from its centre."""
     assert scene.reference is not None
     place = path(scene.reference)
     for i in range(len(scene.reference)):
@@ -314,7 +314,7 @@ def _placed(scene: Scene, path: Callable[[Array], Array]) -> bool:
 
 
 def _point(distance: float | None, angle: float | None) -> Array | None:
-    """A place in polar coordinates."""
+    """Return a place from polar coordinates."""
     if distance is None or angle is None:
         return None
     return distance * np.array([[math.cos(angle)], [math.sin(angle)]])
@@ -328,7 +328,7 @@ def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
 
 
 def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[Array, Array]:
-    """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable.
+    """Return corners around a curve; other curves widen them as long as the curve stays readable.
 
     Parameters
     ----------
@@ -352,7 +352,7 @@ def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[A
 
 
 def _once(curve: Array) -> Array:
-    """A closed curve up to where it comes back to its start: dashes drawn over dashes would look solid."""
+    """Return a closed curve up to its return to the start: overlapping dashes would look solid."""
     from_start = np.linalg.norm(curve - curve[:, :1], axis=0)
     away = np.flatnonzero(from_start > 0.5 * np.nanmax(from_start))
     if not away.size:

@@ -1,4 +1,4 @@
-"""The quantities that are drawn against time: states, controls, costates and what ought to stay constant."""
+"""The quantities that are drawn against time: states, controls, costates, Hamiltonian and invariants."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from satsym.solution import Simulation
 from satsym.spec import PRODUCT, ProblemSpec, Variable
 
 ON_BOUND = 1e-7
-"""How near to a bound a control is on it, relative to the width of its range."""
+"""Largest distance of a saturated control from its bound, relative to the width of its range."""
 
 
 STEADY = 1e-6
-"""A Hamiltonian that ought to be constant varies by less, relative to its terms, or by something to be seen."""
+"""Variation of a constant Hamiltonian, relative to its terms, above which it is visible."""
 
 STEP = 1e-30
 """Relative size of complex steps."""
 
 SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
-"""What is said of times of a quantity, in English."""
+"""English descriptions of the marked times of a quantity."""
 
 
 Forbidden: TypeAlias = Callable[[Array], Array]
@@ -47,37 +47,37 @@ class Series:
     """Name as a formula, and in letters where a formula cannot be set."""
     unit: str
     meaning: str
-    """Unit and meaning as in :class:`~satsym.spec.Variable`."""
+    """Unit and meaning, as in :class:`~satsym.spec.Variable`."""
     values: Array
-    """At the nodes, NaN where there is nothing to draw."""
+    """Values at the nodes, NaN where nothing is drawn."""
     reference: Array | None = None
     free: Array | None = None
     """Values on the reference curve, and in the uncontrolled motion."""
     target: float | None = None
-    """The value that is required at the end."""
+    """The required final value."""
     angle: bool = False
-    """Whether it is an angle."""
+    """Whether the quantity is an angle."""
     lower: float = -math.inf
     upper: float = math.inf
     """Bounds, infinite where there are none."""
     active: NDArray[np.bool_] | None = None
-    """Nodes at which it is on a bound."""
+    """Nodes at which the quantity is at a bound."""
     switching: tuple[float, ...] = ()
-    """Times at which it meets or leaves a bound, as in the scene."""
+    """Times at which the quantity meets or leaves a bound, in the scene's unit."""
     said: str = SWITCHED
-    """What is said of these, in English."""
+    """The English description of these times."""
     size: float = 0.0
-    """What counts as large for it, where its values may be nothing but rounding errors."""
+    """A large value of the quantity, by which rounding errors are recognised."""
     steady: float = 0.0
-    """Variation below this fraction of the size is none that matters."""
+    """Fraction of the size below which a variation does not matter."""
     from_first: bool = False
-    """Whether to count from its first value."""
+    """Whether values are shown relative to the first one."""
     from_zero: bool = False
-    """Whether its axis must show zero."""
+    """Whether the axis must include zero."""
     forbidden: tuple[Forbidden, ...] = ()
     """What path constraints forbid: positive for values at the nodes, of shape (M, N+1), that are not allowed."""
     plain_unit: bool = False
-    """Whether its unit stays as it is, so that it belongs to those beside it."""
+    """Whether the unit stays unchanged, so that neighbouring panels agree."""
 
     @property
     def symbol(self) -> str:
@@ -85,12 +85,12 @@ class Series:
 
 
 def unit_of(variable: Variable, spec: ProblemSpec) -> str:
-    """The unit on an axis: an angle that is stated without one is in radians."""
+    """Return the unit on an axis; an angle that is stated without one is in radians."""
     return "rad" if variable.unit == "1" and variable.symbol in curves.angles(spec) else variable.unit
 
 
 def states(scene: Scene) -> list[Series]:
-    """The states, with the reference, the motion without control, and when points on the way are passed."""
+    """Return the states, with the reference, the uncontrolled motion, and times of points on the way."""
     passed = tuple(time / scene.time_factor for time in scene.passed)
     return [
         Series(
@@ -112,7 +112,7 @@ def states(scene: Scene) -> list[Series]:
 
 
 def _forbidden(scene: Scene, i: int) -> tuple[Forbidden, ...]:
-    """What path constraints forbid that depend on this state, and on time, alone."""
+    """Return what path constraints that depend only on this state, and on time, forbid."""
 
     def field(one: restrictions.Restriction) -> Forbidden:
         return lambda values: one.values({i: values}, np.broadcast_to(scene.nodes, values.shape))
@@ -121,7 +121,7 @@ def _forbidden(scene: Scene, i: int) -> tuple[Forbidden, ...]:
 
 
 def controls(scene: Scene) -> list[Series]:
-    """The controls with their bounds, also their norm where it is bounded; none of a simulation without control."""
+    """Return the controls with bounds, and their norm where it is bounded; none without control."""
     instance, spec = scene.instance, scene.spec
     if isinstance(scene.result, Simulation) and scene.coasting:
         return []
@@ -165,7 +165,7 @@ def controls(scene: Scene) -> list[Series]:
 
 
 def constraints(scene: Scene) -> list[Series]:
-    """The path constraints, none of which may be positive, with the times at which they are met and left."""
+    """Return the path constraints, none of which may be positive, with times of entry and exit."""
     instance, spec = scene.instance, scene.spec
     if not (stated := stated_constraints(spec)):
         return []
@@ -191,7 +191,7 @@ def constraints(scene: Scene) -> list[Series]:
 
 
 def costates(scene: Scene) -> list[Series]:
-    """The costates and the Hamiltonian; nothing for a simulation."""
+    """Return the costates and the Hamiltonian; nothing for a simulation."""
     if scene.lam is None:
         return []
     model, p = scene.instance.model, scene.instance.parameters
@@ -224,7 +224,7 @@ def costates(scene: Scene) -> list[Series]:
 
 
 def invariants(scene: Scene) -> list[Series]:
-    """What the uncontrolled motion keeps constant, with its value there."""
+    """Return the invariants of the uncontrolled motion, with their value there."""
     model, p = scene.instance.model, scene.instance.parameters
     if not scene.spec.invariants:
         return []
@@ -252,7 +252,7 @@ def invariants(scene: Scene) -> list[Series]:
 
 
 def _terms(scene: Scene) -> list[float]:
-    """How large each invariant would be if the parts that depend on one state did not cancel others."""
+    """Return the size of each invariant if the parts that depend on one state did not cancel others."""
     model, p, known = scene.instance.model, scene.instance.parameters, np.isfinite(scene.x).all(axis=0)
     times, x, found = scene.nodes[known], scene.x[:, known], [0.0] * len(scene.spec.invariants)
     for k in range(len(x)):
@@ -265,7 +265,7 @@ def _terms(scene: Scene) -> list[float]:
 
 
 def target(scene: Scene, i: int) -> float | None:
-    """The final value that the instance asks for; of an angle that counts modulo a turn, the nearest one."""
+    """Return the required final value; for an angle modulo a turn, the nearest one."""
     state, last = scene.spec.states[i], scene.x[i, -1] if scene.x.shape[1] else math.nan
     given = scene.instance.final.get(state.symbol)
     if given is None:

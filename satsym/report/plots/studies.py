@@ -1,4 +1,4 @@
-"""Pictures of a study: maps over a grid, curves over one axis, histograms of a sample, and where rows fail."""
+"""Pictures of a study: maps over a grid, curves over one axis, histograms of a sample, and failed rows."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
 PANEL = 3.6
 """Height of a panel, in inches on a screen."""
 SHORT_RANGE = 1e3
-"""Last value by first value up to which a logarithmic axis has plain numbers."""
+"""Ratio of the last to the first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
-"""Greys of cells without a number, one for each way to end."""
+"""Greys of cells without a number, one for each status."""
 FEWEST, LEVELS = 4, 8
-"""Rows and columns from which a map of the cost has contours, and how many of them about."""
+"""Least number of rows and columns of a map with contours of the cost, and the approximate number of contours."""
 OUTER = (0.01, 0.99)
-"""Quantiles beyond which rows may lie far out."""
+"""Quantiles beyond which values may be outliers."""
 
 MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
 COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)
 
 
 def figures(numbers: Numbers) -> dict[str, Figure]:
-    """Figures by name: the quantities, and where rows failed if any did."""
+    """Return figures by name: the quantities, and the failed rows if there are any."""
     found = {"overview": _overview(numbers)}
     if any(one != Status.CONVERGED.value for one in numbers.status):
         found["failures"] = _failures(numbers)
@@ -51,7 +51,7 @@ def figures(numbers: Numbers) -> dict[str, Figure]:
 
 
 def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
-    """File name -> content, each figure in each kind."""
+    """Map file names to contents, each figure in each format."""
     with style.applied(look):
         return {
             file: content
@@ -86,15 +86,15 @@ def _overview(numbers: Numbers) -> Figure:
 
 
 def _noted(page: Figure, entries: Sequence[legend.Entry]) -> None:
-    """Say what cells without a number are, also where there is but one kind of them."""
+    """Add a legend of cells without a number, also for a single kind of them."""
     if entries:
         page.legend(*zip(*entries, strict=True), loc="outside lower center", ncols=style.across(3))
 
 
 def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) -> list[legend.Entry]:
-    """Over the first two axes that vary; further ones are left at their middle values, which is said.
+    """Draw a map over the first two axes that vary; further ones are at their middle values, as a note says.
 
-    What is given back says how the rows ended whose cells have no number.
+    The function returns how the rows ended whose cells have no number.
     """
     assert numbers.shape is not None
     varying = [k for k, count in enumerate(numbers.shape) if count > 1][:2]
@@ -135,7 +135,7 @@ def _colours(values: Any) -> dict[str, Any]:
 
 
 def _without_numbers(place: Axes, x: Array, y: Array, status: NDArray[np.str_]) -> list[legend.Entry]:
-    """Fill the cells of rows without an answer, in a grey for each way to end, and say which it is."""
+    """Fill the cells of rows without an answer, in a grey for each status; return the statuses."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
@@ -149,7 +149,7 @@ def _without_numbers(place: Axes, x: Array, y: Array, status: NDArray[np.str_]) 
 
 
 def _scale(place: Axes, axis: str, values: Array) -> None:
-    """A logarithmic axis for values of equal ratio, with plain numbers where it is short."""
+    """Set a logarithmic axis for values of equal ratio, with plain numbers where it is short."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     if not _logarithmic(values):
@@ -163,14 +163,14 @@ def _scale(place: Axes, axis: str, values: Array) -> None:
 
 
 def _curve(place: Axes, x: Array, values: Array, branch: Array | None) -> None:
-    """Joined within a branch, in the order of the rows."""
+    """Draw a curve, joined within a branch, in the order of the rows."""
     parts = np.zeros(len(x)) if branch is None else np.nan_to_num(branch)
     for first, last in pairwise([0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), len(x)]):
         place.plot(x[first:last], values[first:last], ".-", color=style.BLUE, markersize=4.0)
 
 
 def _borders(place: Axes, x: Array, y: Array, branch: Array) -> None:
-    """White crosses between neighbours of different branches."""
+    """Draw white crosses between neighbours of different branches."""
     for axis in (0, 1):
         before, after = (np.delete(np.arange(branch.shape[axis]), k) for k in (-1, 0))
         one, other = (np.take(branch, places, axis) for places in (before, after))
@@ -180,7 +180,7 @@ def _borders(place: Axes, x: Array, y: Array, branch: Array) -> None:
 
 
 def _logarithmic(values: Array) -> bool:
-    """Whether values are spaced evenly in their logarithms rather than evenly."""
+    """Tell whether values are spaced evenly in their logarithms rather than evenly."""
     own = np.unique(values)
     if len(own) < 3 or own[0] <= 0.0:
         return False
@@ -216,7 +216,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
 
 
 def _without_outliers(values: Array) -> Array:
-    """What lies within the quantiles of 1 and 99 % or as far from these as they are apart: else few bars hold all."""
+    """Return values within the quantiles of 1 and 99 %, extended by their distance: else few bars hold all."""
     if not len(values):
         return values
     low, high = np.quantile(values, OUTER)
@@ -224,7 +224,7 @@ def _without_outliers(values: Array) -> Array:
 
 
 def _failures(numbers: Numbers) -> Figure:
-    """Each row by its first two numbers that vary, and how it ended."""
+    """Draw each row by its first two varied numbers, with the status in which it ended."""
     page = style.titled(numbers.title, style.WIDTH, 0.6 * style.WIDTH)
     place = page.subplots()
     labels = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)
@@ -267,7 +267,7 @@ _TIMES = {
 
 
 def on_axis(column: str) -> str:
-    """A column with its unit as an axis has it; what is not known here stays as it is."""
+    """Return a column with its unit for an axis; unknown units are unchanged."""
     name, bracket, unit = column.partition(" [")
     said = _said(name)
     return labelled(said, unit.removesuffix("]")) if bracket else said
@@ -291,7 +291,7 @@ def _said(name: str) -> str:
 
 
 def latex(name: str) -> str:
-    """A name of a model as a formula, as far as it is built as names of formulas are; empty for others.
+    """Return a name of a model as a formula, if its form allows; empty for others.
 
     Parameters
     ----------

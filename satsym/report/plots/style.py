@@ -1,4 +1,4 @@
-"""How pictures look, and how they become files: the same bytes for the same result on the same versions."""
+"""The style of pictures, and their output as files: the same bytes for the same result on the same versions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
 SKY = "#56B4E9"
-"""Colour of the same palette that is read on a dark ground."""
+"""The colour of the same palette for dark grounds."""
 INK, SOFT, GREY, PALE_GREY, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
 SHADE = 0.12
 STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE
@@ -83,7 +83,7 @@ ARROW: dict[str, Any] = {
 }
 
 GRID = 241
-"""Points of a grid on which it is drawn what is forbidden, along each axis."""
+"""Number of points along each axis of the grid for forbidden regions."""
 MARGIN = 1.3
 """Inches on a screen beside a panel, for its ticks and its label."""
 TITLE = 9.5
@@ -155,7 +155,7 @@ _BEGUN: WeakKeyDictionary[Figure, float] = WeakKeyDictionary()
 
 @contextmanager
 def applied(look: Look = SCREEN) -> Iterator[None]:
-    """Draw in this style, whatever the user's matplotlibrc says; afterwards their settings are back."""
+    """Draw in this style within this context, whatever the user's matplotlibrc says."""
     import logging
 
     # what they log, such as fonts that are looked for, would else go to stderr where nobody listens
@@ -176,22 +176,22 @@ def applied(look: Look = SCREEN) -> Iterator[None]:
 
 
 def with_titles() -> bool:
-    """Whether pages have titles."""
+    """Tell whether pages have titles."""
     return _LOOK.get().titled
 
 
 def sheet() -> Sheet:
-    """What the size of pages means that is asked for."""
+    """Return the dimensions of the requested page size."""
     return SHEETS[_LOOK.get().size]
 
 
 def across(panels: int) -> int:
-    """So many panels side by side, or as many as there is room for."""
+    """Return a number of panels side by side, or as many as fit."""
     return min(panels, sheet().across)
 
 
 def columns(panels: int, wanted: int, row: float, rest: float = 1.2) -> int:
-    """How many panels to put side by side: so many as are wanted, more where the page cannot grow downwards.
+    """Return how many panels to put side by side: the wanted number, or more on a page of limited height.
 
     Parameters
     ----------
@@ -210,22 +210,22 @@ def columns(panels: int, wanted: int, row: float, rest: float = 1.2) -> int:
 
 
 def points(size: float) -> float:
-    """The size of letters that have so many points on a screen."""
+    """Return the size of letters that have so many points on a screen."""
     return size * _LETTERS.get()
 
 
 def on_screen(page: Figure) -> float:
-    """How wide a page would be on a screen, in inches, for letters of the size that it has."""
+    """Return the width of a page on a screen, in inches, for its size of letters."""
     return float(page.get_figwidth()) / _BEGUN[page]
 
 
 def room(page: Figure, columns: float) -> float:
-    """Inches on a screen above a panel, where so many stand side by side."""
+    """Return the inches on a screen above a panel, where so many are side by side."""
     return max(SHORTEST, on_screen(page) / columns - MARGIN)
 
 
 def length(text: str, size: float) -> float:
-    """Inches on a screen that a line of text takes, in letters of so many points there."""
+    """Return the inches on a screen of a line of text, in letters of so many points."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 
@@ -235,9 +235,9 @@ def length(text: str, size: float) -> float:
 
 
 def figure(width: float, height: float) -> Figure:
-    """An empty figure that lays itself out; no pyplot, hence no window and no global state.
+    """Return an empty figure that lays itself out; without pyplot, hence no window and no global state.
 
-    Where a page cannot be as high as it would have to be, letters are smaller.
+    Where a page cannot be as high as required, letters are smaller.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def figure(width: float, height: float) -> Figure:
 
 
 def titled(title: str, width: float, height: float) -> Figure:
-    """A figure under a title, of which two lines are shown at most; or under none, if none are wanted."""
+    """Return a figure under a title of at most two lines, or without one if none is wanted."""
     page = figure(width, height)
     if not with_titles():
         return page
@@ -296,7 +296,7 @@ def hatch(axes: Axes, across: Array, up: Array, field: Array) -> None:
 
 
 def finished(page: Figure) -> Figure:
-    """A figure whose ticks carry their power of ten themselves, and whose lines fit its size."""
+    """Return a figure whose ticks carry their power of ten, and whose lines fit its size."""
     from matplotlib.ticker import ScalarFormatter
 
     from satsym.report.plots.powers import WithPowers
@@ -314,7 +314,7 @@ def finished(page: Figure) -> Figure:
 
 
 def _fit(page: Figure, axes: Axes) -> None:
-    """Break what is written above and below a panel into lines that it has room for."""
+    """Break the texts above and below a panel into lines that fit."""
     place = axes.get_subplotspec()
     if place is None or axes.figure is not page:
         return
@@ -325,9 +325,9 @@ def _fit(page: Figure, axes: Axes) -> None:
 
 
 def broken(text: str, wide: float, size: float = TITLE, most: int | None = None) -> str:
-    """Text in lines that have room; what goes beyond the most of them is left out.
+    """Break text into lines that fit; text beyond the allowed number of lines is left out.
 
-    Formulas with spaces in them are left as they are, and what stands around them.
+    Formulas with spaces are kept whole, with the text around them.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ def broken(text: str, wide: float, size: float = TITLE, most: int | None = None)
 
 
 def _lines(line: str, wide: float, size: float, most: int | None) -> str:
-    """A line, or several where it is too long; formulas are longer as text than they look."""
+    """Break a line that is too long; formulas are longer as text than they look."""
     long = length(line, size)
     if long <= wide:
         return line
@@ -357,13 +357,13 @@ def _lines(line: str, wide: float, size: float, most: int | None) -> str:
 
 
 def contents(name: str, page: Figure) -> dict[str, files.Content]:
-    """A figure in each kind that is asked for: name -> content of the file."""
+    """Map file names to the contents of a figure in each requested format."""
     finished(page)
     return {f"{name}.{kind}": files.binary(rendered(page, kind)) for kind in _LOOK.get().formats}
 
 
 def rendered(page: Figure, kind: str) -> bytes:
-    """A figure as the content of a file of a kind, such as ``png``; without a date, so that it can be compared."""
+    """Return a figure as the content of a file format, such as ``png``, without a date, for comparisons."""
     if (engine := page.get_layout_engine()) is not None:
         # laid out here, once; savefig alone would draw the whole figure a second time to that end
         engine.execute(page)
@@ -377,7 +377,7 @@ _CLIP = re.compile(rb'<clipPath id="(\w+)">(.*?)</clipPath>', re.DOTALL)
 
 
 def clips_named(svg: bytes) -> bytes:
-    """A picture whose clip paths are named after their coordinates as they are written.
+    """Return a picture whose clip paths are named after their coordinates as written.
 
     Matplotlib names them after all digits, the last of which depend on where in memory the layout's variables lie.
     """

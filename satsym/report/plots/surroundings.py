@@ -1,4 +1,4 @@
-"""What a path in a plane or in space is drawn into: what is forbidden, points on the way, another orbit, the body."""
+"""The surroundings of a path in a plane or in space: forbidden regions, points on the way, other orbits, the body."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ UNMOVED_TOLERANCE = 1e-9
 MOST_TURNS = 20
 """Another orbit is followed until it closes, for this many times the duration at most."""
 STEPS = 720
-"""Steps in which a motion is followed, over each duration."""
+"""Number of steps in which a motion is integrated, over each duration."""
 SMALLEST_BODY = 0.02
 """Smallest radius of a body that is drawn to scale, relative to the size of the path."""
 
 
 @dataclass(frozen=True, eq=False)
 class Forbidden:
-    """What path constraints forbid, over the plane of the picture.
+    """A region that path constraints forbid, in the plane of the picture.
 
     Attributes
     ----------
@@ -54,17 +54,17 @@ class Forbidden:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Beside the path; curves and points in the model's unit of length, shape (2 or 3, N)."""
+    """Curves and points drawn beside the path, in the model's unit of length, shape (2 or 3, N)."""
 
     forbidden: tuple[Forbidden, ...] = ()
     passed: Array | None = None
-    """Where points on the way are passed."""
+    """Places of points on the way."""
     other: Array | None = None
-    """The uncontrolled motion that the end joins, once round."""
+    """The uncontrolled motion that the end has to join, once round."""
     other_start: Array | None = None
-    """Where on it is at the start what is met at the end."""
+    """The initial place of the target on that motion."""
     moving: Array | None = None
-    """Where what is met at the end is, at even steps of time from the start to the end."""
+    """Places of the target at equal steps of time from the start to the end."""
     burns: Array | None = None
     """The path where there is thrust, NaN elsewhere; ``None`` where there always is some."""
     radius: float = 0.0
@@ -81,7 +81,7 @@ class Surroundings:
         polar: tuple[int, int] | None,
         places: Sequence[int] = (),
     ) -> Surroundings:
-        """What is around the path of a scene.
+        """Return the surroundings of the path of a scene.
 
         Parameters
         ----------
@@ -111,11 +111,11 @@ class Surroundings:
 
 
 NOTHING = Surroundings()
-"""Around a path of which nothing more is known."""
+"""The surroundings of a path of which nothing more is known."""
 
 
 def draw(axes: Axes, around: Surroundings, view: View, datum: Array, scale: float) -> None:
-    """Draw it into the plane of a view, whose limits are set.
+    """Draw the surroundings in the plane of a view, whose limits are set.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def draw(axes: Axes, around: Surroundings, view: View, datum: Array, scale: floa
 
 
 def before(around: Surroundings, view: View, curve: Array) -> Array:
-    """A curve in the plane of a view, shape (2, N), NaN where it is behind the body."""
+    """Return a curve in the plane of a view, shape (2, N), NaN where it is behind the body."""
     seen = np.asarray(view.axes @ curve)
     if len(curve) < 3 or not around.radius:
         return seen
@@ -152,7 +152,7 @@ def before(around: Surroundings, view: View, curve: Array) -> Array:
 
 
 def draw_from_reference(axes: Axes, around: Surroundings, scale: float) -> None:
-    """Draw what is forbidden into the picture that is seen from the reference, whose limits are set."""
+    """Draw forbidden regions in the picture relative to the reference, whose limits are set."""
     across, up = (np.linspace(*limits, style.GRID) for limits in (axes.get_xlim(), axes.get_ylim()))
     grid = np.array(np.meshgrid(across, up)).reshape(2, -1) / scale
     for one in around.forbidden:
@@ -191,7 +191,7 @@ def _circle(radius: float) -> Array:
 
 
 def _forbidden(scene: Scene, polar: tuple[int, int] | None, places: Sequence[int]) -> list[Forbidden]:
-    """The path constraints on coordinates alone."""
+    """Return the path constraints on coordinates alone."""
     if polar is None and len(places) != 2:
         return []
     coordinates = list(polar or places)
@@ -216,7 +216,7 @@ def _over_plane(one: restrictions.Restriction, coordinates: list[int], polar: bo
 
 
 def _beside_reference(scene: Scene, one: restrictions.Restriction, polar: tuple[int, int]) -> Placing | None:
-    """The constraint over distances from the reference, if that is the same at the start and at the end."""
+    """Return the constraint over distances from the reference, if it is equal at start and end."""
     distance, angle = polar
     assert scene.reference is not None
 
@@ -237,7 +237,7 @@ def _beside_reference(scene: Scene, one: restrictions.Restriction, polar: tuple[
 
 
 def _burns(scene: Scene, path: Array, thrust: Array | None) -> Array | None:
-    """The path where there is thrust, if there is none for some of the time."""
+    """Return the path where there is thrust, if there is none for some of the time."""
     if thrust is None:
         return None
     size = np.nan_to_num(np.linalg.norm(thrust, axis=0))
@@ -248,9 +248,9 @@ def _burns(scene: Scene, path: Array, thrust: Array | None) -> Array | None:
 
 
 def _joined(scene: Scene, place: Placing, polar: tuple[int, int]) -> tuple[Array, Array | None] | None:
-    """The uncontrolled motion that a final condition asks for; and from start to end, if the angle is asked for.
+    """Return the uncontrolled motion that a final condition requires, or from start to end with a given angle.
 
-    Every state must be given at the end but the angle, and those that do not change without control, such as a mass.
+    Every state must be given at the end except the angle, and those that do not change without control, such as a mass.
     """
     if scene.reference is not None or scene.coasting or not np.isfinite(scene.x[:, -1]).all():
         return None

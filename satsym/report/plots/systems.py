@@ -1,4 +1,4 @@
-"""Pictures of an analysis, an orbit and a regulator: eigenvalues, phase portraits, responses, how far a law works."""
+"""Pictures of an analysis, an orbit and a regulator: eigenvalues, phase portraits, responses, region of attraction."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Pictures: TypeAlias = dict[str, files.Content]
 def of_subject(
     given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, look: Look
 ) -> Pictures:
-    """Draw what was found of an instance or a model: near rest, of its orbit, of all attitudes at rest."""
+    """Draw the results on an instance or a model: near rest, of its orbit, of all attitudes at rest."""
     from satsym.instance import Instance
 
     pictures = (of_analysis(found, look) if found else {}) | (of_orbit(orbit, look) if orbit else {})
@@ -83,7 +83,7 @@ def of_attitudes(found: Attitudes, title: str, unit: str = "", look: Look = SCRE
 def of_design(design: Design, look: Look = SCREEN) -> Pictures:
     """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``.
 
-    Where the linear and the exact response are one curve, ``differences`` shows by how much they are not.
+    Where the linear and the exact response coincide, ``differences`` shows how they differ.
     """
     from satsym.report.plots import plane, responses
 
@@ -108,11 +108,11 @@ def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], look: Look) -> P
 
 
 POINTS = 41
-"""Points along each axis of the grid on which directions are computed."""
+"""Number of points along each axis of the grid of directions."""
 
 
 def portrait(found: Analysis) -> Figure | None:
-    """Streamlines, and the straight motions along real eigenvectors; nothing for other than two states."""
+    """Draw streamlines, and straight motions along real eigenvectors; nothing for other than two states."""
     A, states = found.about.system.A, found.about.model.spec.states
     if len(A) != 2 or not found.about.constant:
         return None
@@ -151,7 +151,7 @@ DOTTED: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0,
 
 
 def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
-    """Number above, angle between the y of body and orbit below; nothing where they are not finite.
+    """Draw numbers of equilibria above, angles between body and orbit below; nothing where they are not finite.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From where a path in space is looked at: along the axes, and at right angles to the plane that it lies in."""
+"""Views of a path in space: along the axes, and at right angles to the plane of the path."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from satsym.arrays import Array
 from satsym.report.said import say
 
 FLAT = 1e-6
-"""How far from a plane through the origin, relative to its size, a path is taken to lie in it."""
+"""Largest distance of a plane path from its plane through the origin, relative to its size."""
 AZIMUTH, ELEVATION = 35.0, 25.0
-"""From where a path in space is looked at, in degrees: about the third axis, and above the plane of the others."""
+"""Direction of an oblique view in degrees: about the third axis, and above the plane of the others."""
 ROUND = 1e-3
-"""Relative variation of the distance below which a path has no nearest point worth looking for."""
+"""Relative variation of the distance below which no nearest point is distinguished."""
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture plane."""
+    """A picture plane, by its directions."""
 
     axes: Array
     """Two orthonormal vectors, rightwards and upwards in the picture, shape (2, 2 or 3)."""
     labels: tuple[str, str]
-    """What they are called."""
+    """Labels of the two axes."""
     title: str = ""
     """What the picture shows, where the labels do not say it."""
     spatial: bool = False
-    """Whether it is looked at from aside, so that no axis of it is one of the motion."""
+    """Whether the view is oblique, so that no axis of it is one of the motion."""
 
 
 def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:
-    """The views that show some curves fully, the most telling first.
+    """Return the views that show some curves fully, the most informative first.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:
 
 
 def from_aside(labels: Sequence[str]) -> View:
-    """From far away, a bit above the plane of the first two axes, the third one upwards."""
+    """Return an oblique view from far away, a bit above the plane of the first two axes, the third one upwards."""
     turn, height = np.radians(AZIMUTH), np.radians(ELEVATION)
     right = np.array([-np.sin(turn), np.cos(turn), 0.0])
     up = np.array([-np.sin(height) * np.cos(turn), -np.sin(height) * np.sin(turn), np.cos(height)])
@@ -75,7 +75,7 @@ def from_aside(labels: Sequence[str]) -> View:
 
 
 def _along_normal(path: Array, normal: Array) -> View:
-    """The plane of a path, turned so that the motion goes round against the clock."""
+    """Return the view of a path's plane, in which the motion runs counterclockwise."""
     turning = np.cross(path[:, :-1], path[:, 1:], axis=0) @ np.ones(path.shape[1] - 1)
     normal = normal if turning @ normal >= 0.0 else -normal
     distance = np.linalg.norm(path, axis=0)

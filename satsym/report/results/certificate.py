@@ -1,4 +1,4 @@
-"""The certificate of a solution as an object for JSON, and back."""
+"""The certificate of a solution, converted to an object for JSON and back."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class _Competitors(msgspec.Struct):
 
 
 class Stored(msgspec.Struct):
-    """A certificate in result.json."""
+    """A certificate as it is stored in result.json."""
 
     verdict: Verdict
     boundary_residual: float | None
@@ -66,7 +66,7 @@ class Stored(msgspec.Struct):
 
 
 def certificate_object(certificate: Certificate, spec: ProblemSpec) -> dict[str, Any]:
-    """The certificate of a solution, as JSON has it; costs in the sense of the model's author."""
+    """Return the certificate of a solution as JSON stores it; costs have the author's sense."""
     compared = [
         {"kind": c.kind, "tried": c.tried, "solved": c.solved, "unanswered": c.unanswered}
         | {"cheapest": spec.objective(c.cheapest)}
@@ -77,7 +77,7 @@ def certificate_object(certificate: Certificate, spec: ProblemSpec) -> dict[str,
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON has it: arrays row by row, records by their fields, ``None`` for numbers that are not finite."""
+    """Convert a value to JSON types: arrays by rows, records by fields, ``None`` for numbers that are not finite."""
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, complex):
@@ -96,5 +96,5 @@ def plain(value: Any) -> Any:
 
 
 def absent(value: float | None) -> float:
-    """A number that may be missing: NaN then."""
+    """Return a number that may be missing: NaN then."""
     return math.nan if value is None else value

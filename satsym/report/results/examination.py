@@ -1,4 +1,4 @@
-"""A saved result examined again: the certificate anew, and what result.json says of the answer beside the files."""
+"""Examination of a saved result: a new certificate, and a comparison of result.json with the other files."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from satsym.solvers.certificate import certify
 from satsym.status import Verdict
 
 NOT_COMPARED = frozenset(("satsym", "message", "iterations", "wall_s", "certificate", "instance_file", "continuation"))
-"""Keys of result.json that tell how an answer came about, which no file shows; the certificate is computed anew."""
+"""Keys of result.json on how an answer was found, which no other file shows; the certificate is computed anew."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A value of result.json that is not what the other files say.
+    """A value of result.json that differs from the other files.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Difference:
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """What became of a saved result.
+    """The outcome of examining a saved result.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ def examine(instance: Instance, folder: Path, compared: bool = True) -> Examinat
 
 
 def _of_nothing(solution: Solution) -> Iterator[Difference]:
-    """Events of what the problem does not have."""
+    """Return the events of features that the problem does not have."""
     spec = solution.instance.model.spec
     names = {*spec.control_names, *(one.name for one in spec.path_constraints)} | {one.name for one in spec.interior}
     for place, event in enumerate(solution.events):
@@ -105,7 +105,7 @@ def _of_nothing(solution: Solution) -> Iterator[Difference]:
 
 
 def _differences(stated: Any, found: Any, key: str = "") -> Iterator[Difference]:
-    """Values at which two objects differ, by the keys that lead there."""
+    """Return the values in which two objects differ, by their keys."""
     if isinstance(stated, Mapping) and isinstance(found, Mapping) and stated.keys() == found.keys():
         for name in stated:
             yield from _differences(stated[name], found[name], f"{key}.{name}" if key else name)

@@ -1,4 +1,4 @@
-"""Single files, written whole or not at all; and what files of unknown origin may hold before they are read."""
+"""Single files, written whole or not at all; and checks of foreign files before they are read."""
 
 from __future__ import annotations
 
@@ -23,29 +23,32 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 Content: TypeAlias = Callable[[IO[bytes]], object]
-"""Writes a file's content to a stream."""
+"""A function that writes a file's content to a stream."""
 
 BESIDE = re.compile(r"\.(\d+)\.tmp\Z")
-"""How the name of a file ends that is not finished, with the process that writes it."""
+"""The ending of an unfinished file's name, with the number of the process that writes it."""
 
 
 def text(content: str) -> Content:
-    """A text as the content of a file, in UTF-8."""
+    """Encode a text as the content of a file, in UTF-8."""
     return lambda stream: stream.write(content.encode())
 
 
 def binary(content: bytes) -> Content:
-    """Bytes as the content of a file."""
+    """Return bytes as the content of a file."""
     return lambda stream: stream.write(content)
 
 
 def to_json(value: Mapping[str, Any]) -> str:
-    """The object as JSON text, plain ASCII. Raises ValueError for a number that is not finite."""
+    """Return the object as JSON text in plain ASCII.
+
+    Raises ValueError for a number that is not finite.
+    """
     return json.dumps(value, indent=2, allow_nan=False) + "\n"
 
 
 def check_writable(folder: Path) -> None:
-    """See, without making anything, whether files can be written into a folder that need not exist yet.
+    """Check, without creating anything, that files can be written into a folder that need not exist yet.
 
     Raises
     ------
@@ -101,14 +104,14 @@ def write_text(path: Path, content: str) -> None:
 
 
 def unwritable(place: Path, error: Exception) -> BadInput:
-    """The complaint about a place that the system would not write to."""
+    """Return the complaint about a place that the system refused to write to."""
     reason = getattr(error, "strerror", None) or "the path leads nowhere"
     return BadInput(f"{printable(str(place))}: cannot be written ({reason}); give another place")
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
-    """A regular file to be read, and its size; a pipe or a device, which might never end, is no such file.
+    """Open a regular file for reading, and return its size; a pipe or a device, which might never end, is refused.
 
     Raises
     ------
@@ -125,7 +128,7 @@ def opened(path: Path) -> Iterator[tuple[IO[bytes], int]]:
 
 
 def _sweep(target: Path) -> None:
-    """Remove what processes that are gone have left of this file."""
+    """Remove the remains of this file that processes which no longer run have left."""
     for path in target.parent.glob(f".{_literal(target.name)}.*.tmp"):
         end = BESIDE.search(path.name)
         if end and path.name[: end.start()] == f".{target.name}" and not _alive(int(end[1])):
@@ -133,12 +136,12 @@ def _sweep(target: Path) -> None:
 
 
 def _literal(name: str) -> str:
-    """The name as a pattern that only it matches."""
+    """Return a name as a pattern that matches only it."""
     return re.sub(r"([*?[])", r"[\1]", name)
 
 
 def _alive(process: int) -> bool:
-    """Whether there may be a process of this number; where that cannot be asked, there may."""
+    """Tell whether a process of this number may exist; where that cannot be decided, it may."""
     if os.name != "posix":
         return True
     try:
@@ -152,17 +155,17 @@ def _alive(process: int) -> bool:
 
 MOST_MEMBERS = 16
 LONGEST_DIRECTORY = 2**16
-"""Bytes of an archive's table of contents."""
+"""Largest size of an archive's table of contents, in bytes."""
 MOST_AXES, LONGEST_AXIS = 2, 2**31
 
 _END = struct.Struct("<4s4H2LH")
-"""The end of an archive: signature, disks, numbers of members, size and place of the directory, a comment."""
+"""The end of a zip archive: signature, disks, numbers of members, size and place of the directory, a comment."""
 _LARGER = b"PK\x06\x07"
-"""Refers to a directory of the kind for more than 4 GiB, which could say anything."""
+"""Signature of a directory of more than 4 GiB, which is refused."""
 
 
 def unpacked(content: bytes) -> dict[str, NDArray[Any]]:
-    """The arrays of a .npz file, by name: numbers of double precision, and texts.
+    """Return the arrays of a .npz file by name: numbers of double precision, and texts.
 
     Parameters
     ----------
@@ -188,7 +191,7 @@ def unpacked(content: bytes) -> dict[str, NDArray[Any]]:
 
 
 def _check_end(content: bytes) -> None:
-    """See that the table of contents is short, before it is read."""
+    """Check that the table of contents is short, before it is read."""
     place = len(content) - _END.size
     if place < 0 or content[place : place + 4] != b"PK\x05\x06":
         raise ValueError("no archive of arrays: it has no end")
@@ -198,7 +201,7 @@ def _check_end(content: bytes) -> None:
 
 
 def _check_members(members: list[zipfile.ZipInfo], size: int) -> None:
-    """See that members are plain, and no longer together than the file."""
+    """Check that members are plain, and together not longer than the file."""
     names = [member.filename for member in members]
     if len(set(names)) != len(names) or not all(name.endswith(".npy") for name in names):
         raise ValueError("the archive holds something else than arrays")
@@ -209,7 +212,7 @@ def _check_members(members: list[zipfile.ZipInfo], size: int) -> None:
 
 
 def _array(content: bytes) -> NDArray[Any]:
-    """The array of a .npy file."""
+    """Return the array of a .npy file."""
     stream = io.BytesIO(content)
     if np.lib.format.read_magic(stream) != (1, 0):
         raise ValueError("an array of an unknown format")

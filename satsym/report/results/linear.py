@@ -31,11 +31,11 @@ ANALYSIS = (
     *("equilibrium", "A", "B", "C", "eigenvalues", "modes", "jordan_blocks", "characteristic_polynomial", "routh"),
     *("stability", "controllability", "observability", "exact", "exact_omitted"),
 )
-"""The keys of an analysis, all ``None`` where there is nothing to linearise about."""
+"""The keys of an analysis, all ``None`` where there is no point of linearisation."""
 
 
 def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None, omitted: str = "") -> dict[str, Any]:
-    """What ``satsym analyse --json`` prints; :mod:`satsym.report.results.orbit` has what it adds of an orbit.
+    """Return the object of ``satsym analyse --json``; :mod:`satsym.report.results.orbit` adds the part on orbits.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None, omi
 
 
 def regulator_object(design: Design) -> dict[str, Any]:
-    """What ``satsym lqr --json`` prints; ``cost_from_initial`` is ``None`` for a model as such."""
+    """Return the object of ``satsym lqr --json``; ``cost_from_initial`` is ``None`` for a model alone."""
     found, deviation = design.regulator, design.deviation
     return plain(
         {
@@ -89,19 +89,19 @@ def regulator_object(design: Design) -> dict[str, Any]:
 
 
 def routh_object(found: Routh) -> dict[str, Any]:
-    """The Routh array."""
+    """Return the object of a Routh array."""
     return {"column": found.column, "sign_changes": found.sign_changes, "special_case": found.special_case}
 
 
 def eigenvalue_object(found: Eigenvalue) -> dict[str, Any]:
-    """An eigenvalue with its multiplicities."""
+    """Return the object of an eigenvalue with its multiplicities."""
     return {"value": complex(found.value), "algebraic": found.algebraic, "geometric": found.geometric}
 
 
 def mode_object(found: Mode) -> dict[str, Any]:
-    """A mode: its eigenvalue (with its conjugate), what it is called, and what each state has of it.
+    """Return the object of a mode: its eigenvalue (with its conjugate), its name, and the part of each state.
 
-    Times are in the unit of time of the model, the natural frequency in radians by it.
+    Times are in the unit of time of the model, the natural frequency in radians by that unit.
     """
     return {
         "eigenvalue": complex(found.eigenvalue.value),
@@ -124,7 +124,7 @@ BY_DERIVATION = "the symbolic analysis needs the derivation of the model, which 
 
 
 def exact(about: Linearisation, derivation: Derivation | None = None) -> tuple[dict[str, Any] | None, str]:
-    """What sympy finds about a linear model, as ``satsym analyse --json`` prints it.
+    """Return the exact results on a linear model as ``satsym analyse --json`` prints them.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def exact(about: Linearisation, derivation: Derivation | None = None) -> tuple[d
 
 
 def omitted_because(about: Linearisation, derived: bool = False) -> str:
-    """Why a linear model has no exact analysis, as far as can be said without its derivation; else empty."""
+    """Explain why a linear model has no exact analysis, as far as is clear without its derivation; else empty."""
     model = about.model
     if not model.spec.linear or not about.constant:
         return ""
@@ -172,7 +172,7 @@ def omitted_because(about: Linearisation, derived: bool = False) -> str:
 
 
 def _letters(about: Linearisation) -> int:
-    """On how many parameters the matrix A depends: those that change it, all of them having generic values."""
+    """Return the number of parameters on which the matrix A depends at generic values."""
     given = np.array(about.parameters)
     generic = np.where(given == 0.0, 0.01, given) * np.random.default_rng(0).uniform(1.0, 1.01, len(given))
 
@@ -185,7 +185,7 @@ def _letters(about: Linearisation) -> int:
 
 
 def attitudes(given: Instance | Kernels, derivation: Derivation | None = None) -> Attitudes | None:
-    """Find them; ``None`` for a model that is not one attitude in orbit, or whose derivation is not at hand."""
+    """Find the equilibria of an attitude in orbit; ``None`` for another model, or without its derivation."""
     from satsym.kernels import Kernels
 
     model = given if isinstance(given, Kernels) else given.model
@@ -201,7 +201,7 @@ def attitudes(given: Instance | Kernels, derivation: Derivation | None = None) -
 
 
 def attitudes_object(found: Attitudes) -> dict[str, Any]:
-    """The key ``equilibria`` of ``satsym analyse --json``."""
+    """Return the object under the key ``equilibria`` of ``satsym analyse --json``."""
     whole, over = found.continuum, found.followed
     circles = None if whole is None or whole.circles is None else len(whole.circles)
     changes = [] if over is None else over.changes
@@ -224,7 +224,7 @@ def attitudes_object(found: Attitudes) -> dict[str, Any]:
 
 
 def axis(found: Continuum) -> str | None:
-    """The name of the axis of the body about which a turn changes nothing."""
+    """Return the name of the body's axis about which a turn changes nothing."""
     return None if found.axis is None else "xyz"[found.axis]
 
 

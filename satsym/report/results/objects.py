@@ -1,4 +1,4 @@
-"""The objects that ``--json`` prints and result.json holds: in the model's order, and without NaN or infinity."""
+"""The objects of ``--json`` and result.json, in the model's order, without NaN or infinity."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
 
 SCHEMA = 1
-"""Version of these objects: it grows where a key changes its meaning or goes."""
+"""Version of these objects, increased where a key changes its meaning or is removed."""
 
 
 def head(command: str, spec: ProblemSpec, instance: Instance | None, status: Status) -> dict[str, Any]:
-    """What the object of every command begins with.
+    """Return the keys with which the object of every command begins.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def head(command: str, spec: ProblemSpec, instance: Instance | None, status: Sta
 
 
 def file_of(instance: Instance) -> dict[str, str] | None:
-    """The name of an instance's file and the digest of what it holds; ``None`` for one that was made in Python."""
+    """Return the name of an instance's file with a digest of it; ``None`` for an instance made in Python."""
     digest = digest_of(instance.path)
     return {"name": instance.path.name, "digest": digest} if digest else None
 
@@ -68,12 +68,12 @@ def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[
 
 
 def with_settings(result: dict[str, Any], given: Mapping[str, float]) -> dict[str, Any]:
-    """An object with the numbers that were given beside the instance, by name; no key where there are none."""
+    """Add the numbers that were set on the command line to an object, by name; no key without any."""
     return result | {"set": dict(given)} if given else result
 
 
 def solution_object(solution: Solution) -> dict[str, Any]:
-    """What ``satsym solve --json`` prints.
+    """Return the object of ``satsym solve --json``.
 
     Returns
     -------
@@ -108,19 +108,19 @@ def solution_object(solution: Solution) -> dict[str, Any]:
 
 
 def _interval(interval: CostInterval, spec: ProblemSpec) -> dict[str, Any]:
-    """What the best objective lies between, in the author's sense, the smaller first; and how much was smoothed."""
+    """Return the interval of the best objective, in the author's sense, and the smoothing."""
     ends = sorted(spec.objective(end) for end in (interval.lower, interval.upper))
     return {"cost_interval": plain(ends), "smoothing": plain(interval.smoothing)}
 
 
 def _ranges(instance: Instance) -> dict[str, dict[str, str | None]]:
-    """Which limits of the end are met, ``None`` within them; no key where there are none."""
+    """Return the active limits of the end, ``None`` within them; no key where there are none."""
     met = {name: instance.met[name].value if name in instance.met else None for name in instance.end_limits}
     return {"ends_met": met} if met else {}
 
 
 def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
-    """The answers before it of a continuation, with what had changed by then; no key where there are none."""
+    """Return the earlier answers of a continuation, each with its values; no key where there are none."""
     spec = solution.instance.model.spec
     rows = [
         {
@@ -135,7 +135,7 @@ def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
 
 
 def simulation_object(simulation: Simulation) -> dict[str, Any]:
-    """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
+    """Return the object of ``satsym simulate --json``; see :func:`solution_object`."""
     return head("simulate", simulation.instance.model.spec, simulation.instance, simulation.status) | {
         "feedback": simulation.feedback,
         "t_final": _at(simulation.times, -1),
@@ -146,7 +146,7 @@ def simulation_object(simulation: Simulation) -> dict[str, Any]:
 
 
 def model_object(spec: ProblemSpec) -> dict[str, Any]:
-    """A model, as ``satsym models --json`` lists it."""
+    """Return a model's object in the list of ``satsym models --json``."""
     stated = list(stated_constraints(spec).values())
     return {
         "name": spec.name,
@@ -166,7 +166,7 @@ def model_object(spec: ProblemSpec) -> dict[str, Any]:
 
 
 def instance_object(instance: Instance) -> dict[str, Any]:
-    """An instance, as ``satsym instances --json`` lists it; ``tf`` is ``None`` where it is free."""
+    """Return an instance's object in the list of ``satsym instances --json``; a free ``tf`` is ``None``."""
     return {
         "name": instance.name,
         "title": instance.title,
@@ -179,7 +179,7 @@ def instance_object(instance: Instance) -> dict[str, Any]:
 
 
 def bounded(instance: Instance) -> bool:
-    """Whether anything limits the controls; an angle is not limited."""
+    """Tell whether anything limits the controls; an angle is not limited."""
     whole = instance.control_set
     limited = [part for _, part in whole.parts if part.kind != "angle"] or [whole]
     return any(math.isfinite(v) for part in limited for v in (*part.lower, *part.upper, part.radius))
@@ -194,7 +194,7 @@ def _variable(variable: Variable) -> dict[str, Any]:
 
 
 def _found(solution: Solution) -> dict[str, float | None]:
-    """Parameters that were free, where there is an answer."""
+    """Return the found values of free parameters, where there is an answer."""
     instance, answered = solution.instance, solution.status.answered
     free = (unknown for unknown in instance.free if unknown.place is Place.PARAMETER)
     return {unknown.name: plain(unknown.of(instance)) if answered else None for unknown in free}
@@ -214,22 +214,22 @@ COST = "cost"
 
 
 def time_unit(spec: ProblemSpec) -> str:
-    """The unit of time as the model's units spell it; nothing where they do not agree on one.
+    """Return the unit of time as the model's units spell it; ``None`` where they do not agree on one.
 
-    That of parameters counts where no state and no control has any. Found by the words alone: asking pint costs more
-    than solving.
+    The units of parameters count where no state and no control has a unit of time. The unit is found from the words
+    alone: asking pint takes longer than solving.
     """
     found = (display.time_unit(v.unit for v in each) for each in ((*spec.states, *spec.controls), spec.parameters))
     return next((unit for unit in found if unit != "1"), "")
 
 
 def cost_per(unit: str, spec: ProblemSpec) -> str:
-    """The unit of a costate: of the cost, per unit of the state."""
+    """Return the unit of a costate: that of the cost, per unit of the state."""
     return per(spec.objective_unit or COST, unit) or COST
 
 
 def of_regulator(spec: ProblemSpec, inputs: Collection[str], relative: bool) -> str:
-    """The unit of what a regulator minimises; :data:`COST` where inputs of different units share a plain weight.
+    """Return the unit of a regulator's cost; :data:`COST` where inputs of different units share a plain weight.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ def of_regulator(spec: ProblemSpec, inputs: Collection[str], relative: bool) -> 
 
 
 def times(*units: str) -> str:
-    """The product of units, shortened."""
+    """Return the product of units, with common names cancelled."""
     total = Counter[str]()
     for unit in units:
         total.update(expressions.factors(unit))
@@ -257,7 +257,7 @@ def times(*units: str) -> str:
 
 
 def per(unit: str, other: str | None) -> str | None:
-    """A unit by another one, shortened; ``None`` where that is not clear."""
+    """Return the quotient of two units, with common names cancelled; ``None`` where that is not clear."""
     if other is None:
         return None
     total = Counter(expressions.factors(unit))
@@ -266,7 +266,7 @@ def per(unit: str, other: str | None) -> str | None:
 
 
 def units(spec: ProblemSpec) -> dict[str, str | None]:
-    """Unit of each state, control, invariant and costate by name, of the time ``t`` and of the ``objective``.
+    """Return units by name: of states, controls, invariants, costates, the time ``t`` and the ``objective``.
 
     Names are those of trajectory.csv; ``"1"`` for a plain number, ``None`` where a unit is not clear.
     """
@@ -280,5 +280,5 @@ def units(spec: ProblemSpec) -> dict[str, str | None]:
 
 
 def with_units(names: Sequence[str], known: Mapping[str, str | None]) -> list[str]:
-    """Names of columns with their units in brackets, but for plain numbers and what has none that is clear."""
+    """Return names of columns with their units in brackets, if these are clear and not plain numbers."""
     return [f"{name} [{unit}]" if (unit := known.get(name)) and unit != "1" else name for name in names]

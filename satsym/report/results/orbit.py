@@ -1,4 +1,4 @@
-"""What ``satsym analyse --json`` prints: all of it, and what it has of an orbit."""
+"""The object of ``satsym analyse --json`` as a whole, and its part on an orbit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def examination_object(
     derivation: Derivation | None = None,
     attitudes: Attitudes | None = None,
 ) -> dict[str, Any]:
-    """What ``satsym analyse --json`` prints.
+    """Return the object of ``satsym analyse --json``.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def examination_object(
 
 
 def orbit_object(found: Survey | None) -> dict[str, Any]:
-    """The keys ``orbit``, ``point`` and ``floquet``, each ``None`` for what is no orbit.
+    """Return the keys ``orbit``, ``point`` and ``floquet``, each ``None`` where there is no orbit.
 
     Lengths and times are in the units of the model, angles in radians. ``status`` of ``floquet`` tells why there are no
     multipliers. ``matrix`` belongs to positions and velocities along inertial axes. ``lag`` is the distance by which a
@@ -61,7 +61,7 @@ def orbit_object(found: Survey | None) -> dict[str, Any]:
 
 
 def units(spec: ProblemSpec) -> tuple[str, str]:
-    """The model's units of length and time, each ``"1"`` where it is not clear."""
+    """Return the model's units of length and time, each ``"1"`` where it is not clear."""
     return length_unit(v.unit for v in spec.states), time_unit(v.unit for v in (*spec.states, *spec.controls))
 
 
@@ -101,5 +101,5 @@ def _floquet(found: Floquet) -> dict[str, Any]:
 
 
 def _named(record: object, *names: str) -> dict[str, Any]:
-    """What a record has under these names; ``None`` for each where there is no record."""
+    """Return the named fields of a record; ``None`` for each where there is no record."""
     return {name: None if record is None else getattr(record, name) for name in names}

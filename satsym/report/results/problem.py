@@ -1,6 +1,6 @@
-"""The problem of a saved result: its instance file and, where that is one's own, the generated module of its model.
+"""The problem of a saved result: its instance file and, for a user's own model, the generated module.
 
-They are saved beside the trajectory, so that whoever has the folder can examine the result again.
+They are saved beside the trajectory, so that the result can be examined from its folder alone.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ FILE = "instance.toml"
 
 
 class _Named(msgspec.Struct):
-    """What of result.json says whose result it is."""
+    """The part of result.json that names the instance and the model."""
 
     instance: str | None = None
 
 
 def contents(instance: Instance) -> dict[str, Content]:
-    """The files that state the problem of an instance, name -> content; none for one that was made in Python."""
+    """Map file names to contents for the files that state an instance; empty for one made in Python."""
     try:
         written = text(instance.path)
         model = str(tomllib.loads(written).get("model", ""))
@@ -45,7 +45,7 @@ def contents(instance: Instance) -> dict[str, Content]:
 
 
 def read(folder: Path) -> Instance:
-    """The instance that a saved result is of, from the files of the result alone.
+    """Return the instance of a saved result, from the files of the result alone.
 
     Raises
     ------

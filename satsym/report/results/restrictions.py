@@ -1,4 +1,4 @@
-"""Which states each path constraint is about, so that it can be drawn where these are on the axes. Draws nothing."""
+"""The states that each path constraint depends on, so that it can be drawn over them. This module draws nothing."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from satsym.control_set import stated_constraints
 from satsym.instance import Instance
 
 PROBES = 24
-"""Places of a trajectory at which it is tried what a constraint depends on."""
+"""Number of places of a trajectory at which the dependence of a constraint is tested."""
 MOVED = 0.1
-"""By how much each quantity is moved to that end, relative to its size."""
+"""Change of each quantity for that test, relative to its size."""
 EXACT = 1e-12
-"""Change of a constraint, relative to its size, below which it does not depend on what was moved."""
+"""Change of a constraint, relative to its size, up to which it does not depend on the changed quantity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class Restriction:
     _control: Array
 
     def values(self, states: dict[int, Array], times: Array | float | None = None) -> Array:
-        """The constraint, positive where it is violated, for values of its states.
+        """Evaluate the constraint, positive where it is violated, for values of its states.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class Restriction:
 
 
 def of(instance: Instance, times: Array, x: Array, u: Array) -> list[Restriction]:
-    """The path constraints that depend on no control.
+    """Return the path constraints that depend on no control.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def within(restrictions: Sequence[Restriction], states: Sequence[int], timed: bo
 
 
 def _rows(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """All path constraints, shape (c, N)."""
+    """Evaluate all path constraints, shape (c, N)."""
     with np.errstate(all="ignore"):
         return np.asarray(
             instance.model.path_constraints_batch(t, x, u, instance.parameters, instance.control_set.arguments)

@@ -1,4 +1,4 @@
-"""The list in the ``result.json`` of a set, and whether files are what it says; see :mod:`.sets`."""
+"""The list of files in the ``result.json`` of a set, and checks of files against it; see :mod:`.sets`."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ LIST = "result.json"
 
 MOST_FILES = 200
 LONGEST_LIST = 2**24
-"""Bytes of a result.json that are read."""
+"""Largest size of a result.json that is read, in bytes."""
 LARGEST_READ = 2**28
-"""Bytes of a file that is read into memory: what instances may ask for makes half of that at most."""
+"""Largest size of a file that is read, in bytes: twice the largest that an instance can lead to."""
 BLOCK = 2**20
 
 
@@ -30,18 +30,18 @@ class Listed(msgspec.Struct, frozen=True):
 
 
 class _List(msgspec.Struct):
-    """What of result.json tells which files belong to it; those of older versions list none."""
+    """The part of result.json that lists its files; those of older versions list none."""
 
     files: dict[str, Listed] | None = None
     command: str = ""
 
 
 STUDY, ASKED = "study", "study.json"
-"""The command whose sets take long to compute, and what it writes first."""
+"""The command whose sets take long to compute, and the first file that it writes."""
 
 
 def unusable(path: Path, why: str, command: str = "", more: str = "") -> BadInput:
-    """The complaint about a file of a set, with what writes such a set.
+    """Return the complaint about a file of a set, with the command that writes such a set.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def unusable(path: Path, why: str, command: str = "", more: str = "") -> BadInpu
 
 
 def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
-    """Text, command and files of a result.json.
+    """Return text, command and files of a result.json.
 
     Raises
     ------
@@ -83,13 +83,13 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
 
 
 def may_hold(name: str) -> bool:
-    """Whether a set may have a file of this name: a plain one in its own folder."""
+    """Tell whether a set may have a file of this name: a plain name in its own folder."""
     plain = name.isprintable() and 0 < len(name) <= 100 and name[0] not in ". " and not set("/\\:") & set(name)
     return plain and name != LIST
 
 
 def is_listed(path: Path, listed: Listed) -> bool:
-    """Whether a file is the one that is listed; its size is looked at first."""
+    """Tell whether a file is the listed one, by its size first and then its digest."""
     try:
         with opened(path) as (stream, size):
             return size == listed.bytes and _digest(stream) == listed.sha256
@@ -98,7 +98,7 @@ def is_listed(path: Path, listed: Listed) -> bool:
 
 
 def content(path: Path, listed: Listed) -> bytes:
-    """The content of a listed file, which is known to be the right one.
+    """Return the content of a listed file after a check against the list.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def content(path: Path, listed: Listed) -> bytes:
 
 
 def listed_as(path: Path) -> Listed:
-    """A file as a list has it."""
+    """Return the entry of a file in a list."""
     with opened(path) as (stream, size):
         return Listed(size, _digest(stream))
 

@@ -1,4 +1,4 @@
-"""Files of a result that belong together: replaced as a whole, and read only as a whole.
+"""Sets of result files, replaced as a whole and read only as a whole.
 
 A set is what its ``result.json`` lists, with sizes and digests. Several files cannot take their places in one step, so
 a set is replaced in steps after each of which a process may be killed, and :func:`read` still finds all of the old set
@@ -39,7 +39,7 @@ KEPT_APART = (STUDY, "plot")
 
 @dataclass(frozen=True)
 class Found:
-    """A set that was read."""
+    """A set of files that was read."""
 
     folder: Path
     """Folder of the set."""
@@ -50,11 +50,11 @@ class Found:
     listed: Mapping[str, Listed]
     """Names of the other files of the set."""
     contents: Mapping[str, bytes]
-    """Contents of the files that were asked for."""
+    """Contents of the requested files."""
 
 
 def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:
-    """Replace the set of a folder, which is made if need be; other files in it are left alone.
+    """Replace the set of a folder, which is created if necessary; other files in it are left alone.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content])
 
 
 def extend(found: Found, files: Mapping[str, Content]) -> list[Path]:
-    """Add files to a set that was read, or replace them in it; paths of these files.
+    """Add files to a set that was read, or replace them in it; return their paths.
 
     Its result.json keeps its time, because the result is as old as before.
 
@@ -92,7 +92,7 @@ def extend(found: Found, files: Mapping[str, Content]) -> list[Path]:
 
 
 def read(folder: Path, wanted: Collection[str] = ()) -> Found:
-    """The set of a folder, with every file checked against the list.
+    """Return the set of a folder, with every file checked against the list.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def read(folder: Path, wanted: Collection[str] = ()) -> Found:
 
 
 def written_at(folder: Path) -> int | None:
-    """When the set of a folder was written, in nanoseconds; ``None`` where there is none."""
+    """Return when the set of a folder was written, in nanoseconds; ``None`` where there is none."""
     for place in (folder / NEXT / LIST, folder / LIST):
         with suppress(OSError):
             return place.stat().st_mtime_ns
@@ -122,7 +122,7 @@ def written_at(folder: Path) -> int | None:
 
 
 def command_of(folder: Path) -> str | None:
-    """The command that wrote the set of a folder, ``None`` where there is none.
+    """Return the command that wrote the set of a folder, ``None`` where there is none.
 
     Raises
     ------
@@ -134,10 +134,10 @@ def command_of(folder: Path) -> str | None:
 
 
 def keep_apart(folder: Path, command: str) -> None:
-    """Refuse a folder whose set one of another command must not replace.
+    """Refuse a folder whose set must not be replaced by one of another command.
 
-    A study is replaced by nothing else, for it may have taken days, and replaces nothing else; no more do pictures that
-    stand apart from their result.
+    A study is neither replaced by another command, because it may have taken days, nor replaces another result; the
+    same holds for pictures without their result.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def keep_apart(folder: Path, command: str) -> None:
 
 
 def _counting(folder: Path, wanted: Collection[str]) -> Found:
-    """The set that counts: the next one if it is complete, else that in place."""
+    """Return the valid set: the next one if it is complete, else the one in place."""
     with suppress(BadInput):
         return _verified(folder, folder / NEXT / LIST, wanted)
     return _verified(folder, folder / LIST, wanted)
@@ -191,7 +191,7 @@ def _write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]
 
 
 def _stage(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content], found: Found | None) -> None:
-    """Steps 1 and 2; whatever stops them, short of a kill, leaves nothing."""
+    """Do steps 1 and 2; an interruption, except for a kill, leaves nothing behind."""
     staging = folder / f"{STAGING}{os.getpid()}"
     staging.mkdir()
     try:
@@ -212,7 +212,7 @@ def _stage(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]
 
 
 def _install(folder: Path) -> None:
-    """Step 3, from wherever it was interrupted."""
+    """Do step 3, from wherever it was interrupted."""
     source = folder / NEXT
     _, _, listed = decoded(source / LIST)
     for name, each in _listed_before(folder).items():
@@ -226,7 +226,7 @@ def _install(folder: Path) -> None:
 
 
 def _recover(folder: Path) -> None:
-    """Complete what a killed process has begun, or undo it."""
+    """Complete or undo what a killed process has begun."""
     if (folder / NEXT).exists():
         try:
             _verified(folder, folder / NEXT / LIST, ())
@@ -239,7 +239,7 @@ def _recover(folder: Path) -> None:
 
 
 def _flush(folder: Path) -> None:
-    """Have the system write down the names in a folder, where it can be asked to."""
+    """Make the system write the names in a folder to the disk, where that is possible."""
     if os.name == "posix":
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -257,7 +257,7 @@ def _listed_before(folder: Path) -> dict[str, Listed]:
 
 
 def listed(folder: Path) -> set[str]:
-    """Names of the files of the set in a folder, its list among them; none where there is no such list."""
+    """Return the names of the files of the set in a folder, with its list; empty where there is no such list."""
     for place in (folder / NEXT / LIST, folder / LIST):
         with suppress(BadInput):
             return {*decoded(place)[2], LIST}
@@ -265,7 +265,7 @@ def listed(folder: Path) -> set[str]:
 
 
 PATIENCE, PAUSE = 30.0, 0.01
-"""Seconds to wait for another process, and between two looks."""
+"""Seconds to wait for another process, and between two checks."""
 
 
 @contextmanager
@@ -296,7 +296,7 @@ def locked(folder: Path, *, shared: bool = False) -> Iterator[None]:
 
 
 def _taken(lock: Callable[[], None]) -> bool:
-    """Whether a lock was taken, or cannot be had on this file system."""
+    """Tell whether a lock was taken, or cannot be taken on this file system."""
     try:
         lock()
     except BlockingIOError:

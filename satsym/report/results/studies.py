@@ -1,4 +1,4 @@
-"""The files of a study, made from its chunks: table, trajectories, and what is said of it as a whole."""
+"""The files of a study, made from its chunks: table, trajectories, and summary."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from satsym.studies.parts import Parts
 from satsym.studies.rows import TEXTS, Column, Row
 
 SHOWN = 5
-"""Worst rows, and rows without an answer, for which a command is given."""
+"""Number of worst rows, and of rows without an answer, for which a command is given."""
 
 DRAWN_FIRST, MOST_DRAWN = (Column.OBJECTIVE, Column.T_FINAL, Column.COST_FROM_INITIAL), 3
-"""Columns that are drawn first, and how many are."""
+"""Columns that are drawn first, and the number of drawn columns."""
 
 MOST_READ, ROUNDING = 16, 1e-9
-"""How many of them are looked at, and what may differ by rounding alone."""
+"""Number of columns that are examined, and the relative difference that may be rounding."""
 
 LARGEST_FILE, FILES = 2**28, 100
-"""Bytes of a file of trajectories, larger where there would be more files of them than about this many."""
+"""Size of a file of trajectories in bytes, larger only to keep the number of files at about the second number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,15 +68,15 @@ class Numbers:
 
 @dataclass(frozen=True, eq=False)
 class Merged:
-    """All rows of a study, in order, read from its chunks whenever they are wanted."""
+    """All rows of a study in order, read from its chunks on demand."""
 
     study: Study
     parts: Parts
     branches: Branches | None = None
-    """What comparing neighbouring rows came to, where they were compared."""
+    """The result of comparing neighbouring rows, if they were compared."""
 
     def rows(self) -> Iterator[tuple[int, list[float], Row]]:
-        """Number from 0, values of what varies, and what came of it."""
+        """Yield the number of each row from 0, its values, and its result."""
         for number in range(self.study.chunks):
             values = self.study.chunk(number).values.tolist()
             part = self.parts.read(number)
@@ -84,7 +84,7 @@ class Merged:
                 yield part.start + place, own, self._now(part.start + place, row)
 
     def _now(self, number: int, row: Row) -> Row:
-        """A row with its branch, and with its neighbour's answer where that costs less."""
+        """Return a row with its branch, and with its neighbour's answer where that costs less."""
         if self.branches is None:
             return row
         row = self.branches.changed.get(number, row)
@@ -99,11 +99,11 @@ class Merged:
 
 
 TRAJECTORIES = "trajectories-{:03d}.npz"
-"""The files of trajectories."""
+"""Names of the files of trajectories."""
 
 
 def files(merged: Merged) -> dict[str, Content]:
-    """Everything but result.json."""
+    """Return all files but result.json."""
     study = merged.study
     keys = [key.text for key in study.design.keys]
     asked = {ASKED: text(to_json(asked_object(study)))}
@@ -112,7 +112,7 @@ def files(merged: Merged) -> dict[str, Content]:
 
 
 def trajectories(merged: Merged) -> dict[str, Content]:
-    """Files of trajectories, few whatever the number of rows: arrays ``ROW.t``, ``ROW.x``, ``ROW.u``, ``ROW.lam``."""
+    """Return a few files of trajectories: arrays ``ROW.t``, ``ROW.x``, ``ROW.u``, ``ROW.lam``."""
     if not merged.study.trajectories:
         return {}
     sizes = [merged.parts.size(number) for number in range(merged.study.chunks)]
@@ -143,7 +143,7 @@ def _trajectories(merged: Merged, group: Sequence[int]) -> Content:
 
 
 def asked_object(study: Study) -> dict[str, Any]:
-    """What study.json holds."""
+    """Return the object of study.json."""
     said = head("study", study.instance.model.spec, study.instance, Status.CONVERGED)
     del said["status"]
     varied = [key.text for key in study.design.keys]
@@ -151,7 +151,7 @@ def asked_object(study: Study) -> dict[str, Any]:
 
 
 def study_object(merged: Merged) -> dict[str, Any]:
-    """What ``satsym study --json`` prints and result.json holds."""
+    """Return the object of ``satsym study --json`` and result.json."""
     study, spec = merged.study, merged.study.instance.model.spec
     statuses: Counter[str] = Counter()
     verdicts: Counter[str] = Counter()
@@ -185,7 +185,7 @@ def study_object(merged: Merged) -> dict[str, Any]:
 
 
 def _branches(merged: Merged) -> dict[str, int] | None:
-    """How many branches there are, neighbours of different ones, and rows that have a neighbour's answer."""
+    """Count branches, neighbours of different ones, and rows with a neighbour's answer."""
     found = merged.branches
     if found is None:
         return None
@@ -194,7 +194,7 @@ def _branches(merged: Merged) -> dict[str, int] | None:
 
 
 def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
-    """The columns of a table that are drawn: what varies, and the first that differ from row to row.
+    """Return the columns of a table that are drawn: varied numbers, and the first quantities that differ by row.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
 
 
 def distinguishing(quantities: Mapping[str, Array], varied: Mapping[str, Array]) -> dict[str, Array]:
-    """The first of them that differ, from row to row, from each other and from what varies; if none do, the first."""
+    """Return the first quantities that differ by row, from each other and from what varies; else the first one."""
 
     def varies(name: str, values: Array) -> bool:
         known = values[np.isfinite(values)]
@@ -245,13 +245,13 @@ def distinguishing(quantities: Mapping[str, Array], varied: Mapping[str, Array])
 
 
 def _same(values: Array, others: Array) -> bool:
-    """Whether a column is another one but for rounding, such as the duration what it costs, where it has numbers."""
+    """Tell whether two columns are equal up to rounding, such as duration and cost, where they have numbers."""
     known = np.isfinite(values)
     return bool(np.allclose(values[known], others[known], rtol=ROUNDING, atol=0.0))
 
 
 def _case(study: Study, number: int, values: Sequence[float]) -> dict[str, Any]:
-    """A row, and the command that computes it alone."""
+    """Return a row, and the command that computes it alone."""
     own = dict(zip((key.text for key in study.design.keys), values, strict=True))
     finite = {name: value if np.isfinite(value) else None for name, value in own.items()}
     return {"row": number, "values": finite, "reproduce": _reproduced(study, own)}

@@ -1,4 +1,4 @@
-"""The table of a study: names and units of its columns, and numbers and words read back by these names."""
+"""The table of a study: names and units of its columns, and reading of numbers and texts by these names."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from satsym.status import BadInput
 from satsym.studies.rows import TEXTS, Column, Row, Scalar
 
 BEFORE, AFTER = (Column.ROW, Column.KEY), (Column.STATUS, Column.MESSAGE)
-"""Columns that stand before the values of what varies, and after them."""
+"""Columns before the values of varied numbers, and after them."""
 
 
 Rows: TypeAlias = Callable[[], Iterable[tuple[int, list[float], Row]]]
-"""Number from 0, values of what varies, and what came of it."""
+"""A function that yields, for each row, its number from 0, its values, and its result."""
 
 
 def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows, form: TableFormat = TableFormat.CSV) -> Content:
-    """The table; empty where there is no number.
+    """Return the table of a study; empty where there are no numbers.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows, form: TableForma
 
 
 def _found(rows: Rows) -> list[str]:
-    """Names of all numbers that there are."""
+    """Return the names of all numbers in the rows."""
     found: dict[str, None] = {}
     for _, _, row in rows():
         found.update(dict.fromkeys(row.numbers))
@@ -70,7 +70,7 @@ def _as_parquet(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content
 
 
 def _as_csv(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
-    """In UTF-8."""
+    """Return the table as CSV in UTF-8."""
 
     def written(stream: IO[bytes]) -> None:
         found = _found(rows)
@@ -88,14 +88,14 @@ def _as_csv(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
 
 
 def header(spec: ProblemSpec, names: Sequence[str]) -> list[str]:
-    """Names of columns with their units."""
+    """Return the names of columns with their units."""
     return with_units(names, dict(_units(spec)))
 
 
 def _units(spec: ProblemSpec) -> Iterator[tuple[str, str | None]]:
-    """The unit of each column that has one.
+    """Return the unit of each column that has one.
 
-    Numbers of steps, estimated errors and what laws measure besides have none.
+    Numbers of steps, estimated errors and other measures of control laws have none.
     """
     own = units(spec)
     time, costs = own["t"], (Column.COST_FROM_INITIAL.value, "metrics.lqr_cost", "metrics.lqr_cost_linear")
@@ -127,7 +127,7 @@ def _units(spec: ProblemSpec) -> Iterator[tuple[str, str | None]]:
 
 
 def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda names: names) -> dict[str, NDArray[Any]]:
-    """Columns of a table by their names: numbers, NaN where there is none, or texts.
+    """Return columns of a table by name: numbers, NaN where there is none, or texts.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda na
 
 
 def labels(path: Path) -> dict[str, str]:
-    """Names of columns -> these with their units."""
+    """Map names of columns to names with units."""
     if path.name == TableFormat.PARQUET.file:
         return labels_of(names_of(path))
     with path.open(encoding="utf-8", newline="") as stream:
@@ -164,7 +164,7 @@ def labels_of(header: Sequence[str]) -> dict[str, str]:
 
 
 def path_of(folder: Path) -> Path:
-    """The table of a study that is done, whatever it is written as."""
+    """Return the table of a finished study, whatever its format."""
     return next((found for one in TableFormat if (found := folder / one.file).is_file()), folder / TableFormat.CSV.file)
 
 
@@ -175,11 +175,11 @@ def _cell(value: Scalar) -> str:
 
 
 GROUP = 16384
-"""Rows that are written at a time, and are in memory."""
+"""Number of rows that are written at a time, and held in memory."""
 
 
 def require() -> None:
-    """Refuse where pyarrow is missing, before anything is computed.
+    """Refuse, before anything is computed, if pyarrow is missing.
 
     Raises
     ------
@@ -219,7 +219,7 @@ def names_of(path: Path) -> list[str]:
 
 
 def read(path: Path, names: Sequence[str]) -> list[NDArray[Any]]:
-    """Columns: numbers, NaN where there is none, or texts, empty where there is none."""
+    """Return columns: numbers, NaN where there is none, or texts, empty where there is none."""
     require()
     table = import_module("pyarrow.parquet").read_table(path, columns=list(names))
     arrow, found = _arrow(), []

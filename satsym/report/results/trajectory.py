@@ -1,4 +1,4 @@
-"""Trajectories as files, and results read back from them."""
+"""Trajectories as files, and reading of saved results."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ COMMANDS = ("solve", "simulate")
 """Commands whose results hold a trajectory."""
 
 _LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
-"""How methods and feedbacks are called."""
+"""The form of the names of methods and feedbacks."""
 
 EQUAL_STATES = 1e-9
-"""Difference of initial states that is none, relative to their size along the way."""
+"""Largest difference of equal initial states, relative to their size on the way."""
 
 
 class _Kept(msgspec.Struct):
@@ -50,7 +50,7 @@ class _Kept(msgspec.Struct):
 
 
 class _Event(msgspec.Struct):
-    """Something that happens along the way, in result.json."""
+    """An event on the way in result.json."""
 
     kind: str
     name: str
@@ -58,7 +58,7 @@ class _Event(msgspec.Struct):
 
 
 class _Result(msgspec.Struct):
-    """What of result.json is read back; the rest is in the trajectory."""
+    """The part of result.json that is read back; the rest is in the trajectory."""
 
     command: str
     model: str
@@ -81,7 +81,7 @@ class _Result(msgspec.Struct):
 
 
 def contents(found: Solution | Simulation) -> dict[str, Content]:
-    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a simulation.
+    """Return ``trajectory.npz`` and ``trajectory.csv`` of a solution or a simulation.
 
     The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), the names in
     ``states`` and ``controls``, and the ``status``; for a solution also ``history`` (2, K), cost and residual of each
@@ -122,7 +122,7 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
 
 
 def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.Found]:
-    """What ``satsym solve`` or ``satsym simulate`` wrote into a folder.
+    """Return what ``satsym solve`` or ``satsym simulate`` wrote into a folder.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
 
 
 def _with_found(instance: Instance, parameters: Mapping[str, float | None], stored: Stored) -> Instance:
-    """The instance with what it leaves free as it was found; as it is where there is no answer."""
+    """Return the instance with the found values of its free numbers, if there is an answer."""
     for unknown in instance.free:
         if unknown.place is Place.PARAMETER:
             values = np.array([absent(parameters.get(unknown.name))])
@@ -209,7 +209,7 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
 
 
 def _interval(result: _Result, spec: ProblemSpec) -> CostInterval | None:
-    """What the least cost lies between, where that is stored."""
+    """Return the interval of the least cost, where it is stored."""
     if result.cost_interval is None:
         return None
     lower, upper = sorted(spec.objective(end) for end in result.cost_interval)
@@ -239,7 +239,7 @@ def _result(path: Path, content: bytes) -> _Result:
 
 
 def _fits(stored: Stored, spec: ProblemSpec, solved: bool) -> bool:
-    """Whether the arrays have the names, shapes and kinds that :func:`contents` gives them, and times that pass."""
+    """Tell whether the arrays have the names, shapes and kinds of :func:`contents`, and valid times."""
     texts = {"states": list(spec.state_names), "controls": list(spec.control_names)}
     numbers = {"times", "x", "u"} | ({"lam", "history", "switching"} if solved else set())
     if stored.keys() != {"status", *texts, *numbers}:
@@ -261,7 +261,7 @@ def _fits(stored: Stored, spec: ProblemSpec, solved: bool) -> bool:
 
 
 def _passes(stored: Stored) -> bool:
-    """Whether time passes, and never goes back, where there is any motion; switching times are always numbers."""
+    """Tell whether times never decrease, where there is any motion; switching times must be numbers."""
     times, switching = stored["times"], stored.get("switching", np.empty(0))
     if not np.isfinite(switching).all() or not np.isfinite(stored["x"]).any():
         return bool(np.isfinite(switching).all())
@@ -269,7 +269,7 @@ def _passes(stored: Stored) -> bool:
 
 
 def _begun(instance: Instance, feedback: str) -> Sequence[float]:
-    """Where a motion begins: under a classical law after its impulse."""
+    """Return the initial states of a motion: under a classical law, those after its impulse."""
     if feedback != "classical":
         return instance.initial
     from satsym.analysis.classical.law import loop
@@ -279,7 +279,7 @@ def _begun(instance: Instance, feedback: str) -> Sequence[float]:
 
 
 def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
-    """Whether the first of some states is the given one, where it is known, but for rounding."""
+    """Tell whether the first states are the given ones, where they are known, up to rounding."""
     if not x.shape[1]:
         return True
     with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""When controls switch, saturate, burn and coast, in words."""
+"""Arcs in words: when controls switch, saturate, burn and coast."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from satsym.report.terminal.table import figure
 from satsym.solution import Solution
 
 SHOWN_TIMES = 6
-"""Switching times, or arcs, of one control that are listed."""
+"""Largest number of switching times, or arcs, of one control that are listed."""
 SHOWN_ARCS = 9
-"""Arcs of a structure that are put in words; longer ones keep the signs of the message."""
+"""Largest number of arcs of a structure that are put in words; longer ones keep the signs of the message."""
 _AT_BOUND = 1e-9
 _SIGNS = {"+": "upper bound", "-": "lower bound", "0": "zero", "s": "singular", "b": "boundary"}
 _THRUST = {"+": "burn", "-": "coast", "0": "coast", "s": "singular"}
@@ -25,12 +25,12 @@ _STRUCTURE = re.compile(r"structure ([-+0sb]+(?: \| [-+0sb]+)*), (?:\d+ switch(?
 
 
 def rows_of_arcs(solution: Solution, unit: str) -> list[tuple[str, str, str]]:
-    """For each control, or those that change together: what is said, their names, and the times."""
+    """Return, for each control or group of controls, a description, their names, and the times."""
     return [_row(solution, controls, times, unit) for controls, times in switching_together(solution)]
 
 
 def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]]:
-    """Switching times, and before them all controls that have the same: those of a vector switch together."""
+    """Return switching times, each with all controls that share them, as those of a vector do."""
     found: dict[tuple[float, ...], list[str]] = {}
     for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
         if times:
@@ -39,7 +39,7 @@ def switching_together(solution: Solution) -> list[tuple[str, tuple[float, ...]]
 
 
 def in_words(solution: Solution, text: str) -> str:
-    """A solver's message in the language asked for, with the structure ``-+-`` of arcs in words, control by control."""
+    """Translate a solver's message, with the structure ``-+-`` of arcs in words, control by control."""
     found, names = _STRUCTURE.match(text), solution.instance.model.spec.control_names
     each = found[1].split(" | ") if found else []
     if not found or len("".join(each)) > SHOWN_ARCS or (len(each) > 1 and len(each) != len(names)):
@@ -56,7 +56,7 @@ def in_words(solution: Solution, text: str) -> str:
 
 
 def at_bound(row: Array, limits: tuple[float, float]) -> Array:
-    """Where a control, or a norm, is at one of its finite bounds."""
+    """Tell where a control, or a norm, is at one of its finite bounds."""
     finite = [bound for bound in limits if np.isfinite(bound)]
     near = [np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite]
     return np.logical_or.reduce(near) if near else np.zeros(len(row), bool)
@@ -73,7 +73,7 @@ def _row(solution: Solution, controls: str, times: Sequence[float], unit: str) -
 
 
 def _burns(solution: Solution, names: Sequence[str], times: Sequence[float], unit: str) -> str:
-    """Arcs of full and of no thrust; empty where the controls are no vector whose norm jumps between the two."""
+    """Return arcs of full and of zero thrust; empty unless the controls are a vector whose norm switches."""
     all_names = solution.instance.model.spec.control_names
     for bound in solution.instance.bounded_norms:
         if bound.lower == 0.0 and [all_names[k] for k in bound.places] == list(names):
@@ -90,7 +90,7 @@ def _burns(solution: Solution, names: Sequence[str], times: Sequence[float], uni
 
 
 def _saturated(solution: Solution, name: str, times: Sequence[float]) -> list[tuple[float, float]]:
-    """Arcs on which a control that jumps nowhere is at a bound; none where it jumps."""
+    """Return arcs on which a continuous control is at a bound; none for a control that jumps."""
     place = solution.instance.model.spec.control_names.index(name)
     row, limits = solution.u[place], (solution.instance.lower[place], solution.instance.upper[place])
     if solution.method == "bang-bang" or _jumps(solution.times, row):
@@ -105,7 +105,7 @@ def _jumps(times: Array, row: Array) -> bool:
 
 
 def _arcs(solution: Solution, row: Array, times: Sequence[float]) -> Iterator[tuple[float, float, float]]:
-    """Beginning and end of each arc, with the value at the node next to its middle."""
+    """Return beginning and end of each arc, with the value at the node nearest to its middle."""
     if not len(solution.times):
         return
     ends = [float(solution.times[0]), *sorted(times), float(solution.times[-1])]
@@ -126,6 +126,6 @@ def _listed(parts: Sequence[str], unit: str) -> str:
 
 
 def _throttled(solution: Solution) -> bool:
-    """Whether the controls are one vector whose norm is between zero and a bound."""
+    """Tell whether the controls are one vector whose norm is between zero and a bound."""
     norms = solution.instance.bounded_norms
     return len(norms) == 1 and norms[0].lower == 0.0

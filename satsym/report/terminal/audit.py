@@ -1,4 +1,4 @@
-"""The audit on a terminal: what falls and what stands first, then findings; and one formula, checked."""
+"""An audit on a terminal: conclusions first, then findings; and the check of one formula."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ _INDENT = "  "
 _LABEL = 10
 _BAR = 24
 _CHARTED = 3
-"""Rows from which on a chart says more than their list."""
+"""Number of rows from which on a chart is shown."""
 _SHORT_FORMULA = 30
-"""Characters of what is printed that stand behind a verdict."""
+"""Largest number of characters of a formula that is printed after its verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
-"""Where a word that is longer than a line may be parted: after signs."""
+"""The parts of a long word that may be on different lines: it is broken after signs."""
 
 
 def audit_text(
@@ -54,7 +54,7 @@ def audit_text(
     code: bool = False,
     language: str = "en",
 ) -> str:
-    """The findings of some documents, for the terminal.
+    """Return the findings of some documents, for the terminal.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def audit_text(
 
 
 def coverage_text(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -> str:
-    """What of the documents, and of their texts as far as they are known, has no row, for the terminal."""
+    """Return the parts of documents, and of their known texts, that have no row, for the terminal."""
     lines = []
     for ledger, text in zip(ledgers, found, strict=True):
         missing, numbers = ledger.uncovered(), len(ledger.document.numbers)
@@ -127,7 +127,7 @@ def _document(review: Review, rows: bool, code: bool) -> Iterator[str]:
 
 
 def _chart(review: Review) -> Iterator[str]:
-    """How much of each kind stands, falls and is open, as bars."""
+    """Return bars of how many rows of each kind are right, wrong and open."""
     keys = ("stood", "fallen", "left_open")
     yield f"{_INDENT}{review.texts.get('audit', 'chart')}"
     widest, said = max(len(name) for name, *_ in review.chart), []
@@ -144,7 +144,7 @@ def _chart(review: Review) -> Iterator[str]:
 
 
 def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Iterator[str]:
-    """A finding with what is printed, what is true, and what it spoils."""
+    """Return a finding with the printed content, the true one, and its consequences."""
     row, texts = finding.places[0], review.texts
     stands = f" ({review.placed(where(row))})" if where(row) else ""
     yield from _heading(review.texts, row, f"{number}. {review.places(finding.places)}", stands, 2)
@@ -154,12 +154,12 @@ def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Itera
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
-    """A finding in a sentence; what is printed there stands on pages, and in the list of all rows."""
+    """Return a finding in a sentence, without the printed content, which pages and the list of rows have."""
     return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
 
 
 def _row(review: Review, row: Judged, code: bool) -> Iterator[str]:
-    """A row in full."""
+    """Return a row in full."""
     yield ""
     stands = f" ({review.placed(where(row))})" if where(row) else ""
     yield from _heading(review.texts, row, review.placed(row.key), stands, 1)
@@ -168,14 +168,14 @@ def _row(review: Review, row: Judged, code: bool) -> Iterator[str]:
 
 
 def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -> list[str]:
-    """A row with its verdict, and what it prints where that is short."""
+    """Return a row with its verdict, and its printed content where that is short."""
     heading = f"{named}: {texts.get('verdicts', row.verdict)}{stands}"
     printed = f", {texts.get('audit', 'printed')} {flat(row.printed)}" if _is_short(row) else ""
     return _wrapped(heading + printed, 1, hanging)
 
 
 def _facts(review: Review, row: Judged, *, short: bool = False, code: bool = False) -> Iterator[str]:
-    """What is printed and what is so instead, each once; code where it is asked for."""
+    """Return the printed and the true content, each once, and code where requested."""
     claim, found = row.kind == "claim", measured(row)
     said = row.original or row.says if claim or not row.printed else ""
     facts = {
@@ -203,7 +203,7 @@ def _labelled(label: str, text: str) -> list[str]:
 
 
 def _wrapped(text: str, depth: int = 0, hanging: int = 1) -> list[str]:
-    """Lines as wide as the terminal; a word that is longer than that is parted after its signs."""
+    """Break lines at the width of the terminal; longer words are broken after their signs."""
     indent, further = _INDENT * depth, _INDENT * (depth + hanging)
     width = _width()
     lines, line = [], indent
@@ -228,7 +228,7 @@ def _pieces(word: str, room: int) -> list[str]:
 
 
 def checked_text(answers: Sequence[Answer]) -> str:
-    """A line for how letters were understood, where there was a doubt, and one for each equation."""
+    """Return a line on how unclear letters were understood, and one for each equation."""
     understood = dict.fromkeys(filter(None, map(_understood, answers)))
     return "\n".join([*understood, *map(_line, answers)])
 
@@ -260,7 +260,7 @@ def _line(answer: Answer) -> str:
 
 
 def drafted_text(ledger: Path, found: Draft) -> str:
-    """How many rows were drafted, and what was not read or understood, with the places."""
+    """Return how many rows were drafted, and what was not read or understood, with the places."""
     counted = Counter(row["verdict"] for row in found.rows)
     lines = [
         say(

@@ -1,4 +1,4 @@
-"""What a certificate says to people: its verdict in a sentence, and each condition as a statement with its limit."""
+"""Certificates as text: the verdict in a sentence, and each condition as a statement with its limit."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ _HOLDS = {
     "switching function vanishes on an arc": "switching functions zero at switching times only",
     "width of the cost interval": "cost interval narrow",
 }
-"""A check -> what is so where it passes; checks that can only fail are not here."""
+"""What is true where a check passes, by check; those that can only fail are not listed."""
 
 _FAILS = {
     "another minimiser of H remains equally good": "another minimiser of H remains equally good",
@@ -100,13 +100,13 @@ _FAILS = {
     "switching function vanishes on an arc": "switching function zero within an arc",
     "width of the cost interval": "cost interval too wide",
 }
-"""A check -> what is wrong where it fails; all others are named by what is wrong."""
+"""What is wrong where a check fails, by check; the names of all others say it."""
 
 _NAMED = {
     re.compile(r"cheaper by: (.*)"): "nothing cheaper: <said_kind>",
     re.compile(r"transversality at the start: (.*)"): "transversality condition at the start holds: <said_kind>",
 }
-"""Checks that name something -> what is so where they pass."""
+"""Checks whose names contain a name, with what is true where they pass."""
 
 _MEANINGS = {
     Verdict.CERTIFIED: "strict local minimum",
@@ -114,16 +114,16 @@ _MEANINGS = {
     Verdict.EXTREMAL_ONLY: "first-order conditions hold; not shown to be a strict local minimum",
     Verdict.FAILED: "a condition of optimality is violated",
 }
-"""What a verdict claims, in the words that solve, study and compare share."""
+"""The claim of each verdict, in the words that solve, study and compare share."""
 
 
 def meaning(verdict: Verdict) -> str:
-    """What a verdict claims, in a few words."""
+    """Return the claim of a verdict in a few words."""
     return say(_MEANINGS[verdict])
 
 
 def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
-    """The verdict, the conditions with what was measured and its limit, and the competitors kind by kind."""
+    """Return the verdict, the conditions with values and limits, and the competitors by kind."""
     compared = competitor_rows(certificate, spec)
     return [
         *wrapped(say("certificate: <verdict>", verdict=verdict_text(certificate, spec.maximise))),
@@ -135,7 +135,7 @@ def certificate_lines(certificate: Certificate, spec: ProblemSpec) -> list[str]:
 
 
 def condition_rows(certificate: Certificate) -> list[tuple[str, str, str, str]]:
-    """Each condition as a statement, what was measured, its limit, and whether it failed; below a header."""
+    """Return a table of conditions: statement, measured value, limit, and whether it failed."""
     failed = say("FAILED")
     condition, measured, limit = each("condition", "measured", "limit")
     return [(condition, measured, limit, "")] + [
@@ -150,7 +150,7 @@ def condition_rows(certificate: Certificate) -> list[tuple[str, str, str, str]]:
 
 
 def competitor_rows(certificate: Certificate, spec: ProblemSpec) -> list[tuple[str, str, str, str]]:
-    """Each kind of competitors, how many were tried and solved, and the best of them; below a header."""
+    """Return a table of competitors by kind: how many were tried and solved, and the best of them."""
     kind, tried, solved = each("competitors", "tried", "solved")
     best = say("highest objective" if spec.maximise else "lowest cost")
     return [(kind, tried, solved, best)] + [
@@ -161,19 +161,19 @@ def competitor_rows(certificate: Certificate, spec: ProblemSpec) -> list[tuple[s
 
 
 def claim(certificate: Certificate) -> str:
-    """What a certificate claims, in a few words."""
+    """Return the claim of a certificate in a few words."""
     return meaning(certificate.verdict) if certificate.scope is Scope.LOCAL else say("global minimum")
 
 
 def theorem_lines(certificate: Certificate) -> list[str]:
-    """The theorem that shows what a certificate claims; none where no theorem does."""
+    """Return the theorem that proves a certificate's claim; none where no theorem does."""
     if certificate.verdict is Verdict.FAILED or any(check.name == certificate.because for check in certificate.checks):
         return []
     return wrapped(say("shown by: <theorem>", theorem=message(certificate.because))) if certificate.because else []
 
 
 def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
-    """The verdict with what it claims, how many competitors it rests on, and what nobody compared."""
+    """Return the verdict with its claim, the number of competitors, and what was not compared."""
     words, solved = claim(certificate), sum(c.solved for c in certificate.competitors)
     if certificate.verdict is Verdict.CERTIFIED and solved:
         one = "the one competing solution is no better" if maximise else "the one competing solution is not cheaper"
@@ -189,7 +189,7 @@ def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
 
 
 def statement(check: Check) -> str:
-    """What a check says: what holds where it passed, else what is wrong."""
+    """Return the statement of a check: what holds where it passed, else what is wrong."""
     if not check.passed:
         return say(_FAILS[check.name]) if check.name in _FAILS else message(check.name)
     for pattern, text in _NAMED.items():

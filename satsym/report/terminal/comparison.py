@@ -1,4 +1,4 @@
-"""A comparison of instances for people and for programs."""
+"""Comparisons of instances, for people and for programs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from satsym.analysis.comparison import Case, Range
 
 LEFT_OUT = ("gain_rate", "gain_state")
-"""Metrics of one law alone."""
+"""Metrics that only one control law has."""
 MEANINGS = {
     "transition_time": "duration of the manoeuvre: the optimal time, or the settling time of a control law",
     "first_reached": "time at which the command is first reached",
@@ -30,17 +30,17 @@ MEANINGS = {
     "_driven": "largest deviation from the undriven motion",
     "_share": "rate of the constraint caused by the control that keeps to it, relative to the largest along the arc",
 }
-"""What metrics measure, by their names or by what these end with."""
+"""Meanings of metrics, by their names or endings."""
 
 
 def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:
-    """Each metric that any case has, with its value for each of them."""
+    """Return each metric that any case has, with its value for each of them."""
     keys = dict.fromkeys(key for case in cases for key in case.metrics if key not in LEFT_OUT)
     return {key: [case.metrics.get(key) for case in cases] for key in keys}
 
 
 def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[str, Any]:
-    """What ``satsym compare --json`` prints."""
+    """Return the object of ``satsym compare --json``."""
     specs = [case.instance.model.spec for case in cases]
     status = Status.CONVERGED if all(case.answered for case in cases) else Status.NOT_CONVERGED
     begins = head("compare", specs[0], None, status)
@@ -71,7 +71,7 @@ def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[
 
 
 def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
-    """The metrics side by side, what is to be said of each case, and a range if there is one."""
+    """Return the metrics side by side, remarks on each case, and a range if there is one."""
     names = [case.instance.name for case in cases]
     found = metrics_of(cases)
     shown = {key: ["" if v is None else figure(v, 8) for v in _without_rounding(key, found)] for key in found}
@@ -94,14 +94,14 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
 
 
 def _meanings(found: Iterable[str]) -> list[str]:
-    """What the metrics measure, each kind once."""
+    """Return the meanings of the metrics, each kind once."""
     kinds = {key: f"..{key}" if key.startswith("_") else key for key in MEANINGS}
     used = [key for key in kinds if any(name == key or (key[0] == "_" and name.endswith(key)) for name in found)]
     return table([each("metric", "meaning"), *((kinds[key], say(MEANINGS[key])) for key in used)]) if used else []
 
 
 def _without_rounding(key: str, found: Mapping[str, Sequence[float | None]]) -> list[float | None]:
-    """Values of a metric; final ones are zero where they are nothing beside the peak of the same."""
+    """Return values of a metric, with final values as zero where they are rounding beside the peak."""
     name, _, kind = key.rpartition("_")
     peaks = found.get(f"{name}_peak") if kind == "final" else None
     return [
@@ -133,7 +133,7 @@ def _range(case: Case, over: Range) -> list[str]:
 
 
 def unit_of(cases: Sequence[Case], key: str) -> str:
-    """The unit of a metric, after its variable and what it is of it."""
+    """Return the unit of a metric, from its variable and its kind."""
     if key in ("transition_time", "first_reached", "settling_time"):
         return "s" if any(v.unit != "1" for v in cases[0].instance.model.spec.states) else ""
     name, _, kind = key.rpartition("_")

@@ -1,4 +1,4 @@
-"""The keys of instance files, for the terminal and as a page."""
+"""The keys of instance files, as text for the terminal and as a page of the documentation."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ own, such as `"5 km"`. Unknown keys are refused.
 
 REQUIRED = "must be given"
 WIDEST, DEEPEST = 100, 20
-"""Columns of the terminal that are used at most, and those of names beside which there is room."""
+"""Largest number of columns of the terminal that are used, and of names with text beside them."""
 TITLES = ("key", "value", "unit", "default", "meaning", "used by")
 FILE = Path(__file__).parents[3] / "docs" / "instances.md"
 
 
 def keys_text() -> str:
-    """A block for each table, a paragraph for each key."""
+    """Return a block for each table, with a paragraph for each key."""
     width = min(WIDEST, shutil.get_terminal_size().columns)
     blocks = []
     for title, rows in _blocks():
@@ -59,7 +59,7 @@ def _said(default: str) -> str:
 
 
 def page() -> str:
-    """The page of the documentation."""
+    """Return the page of the documentation."""
     blocks = [HEAD]
     for title, rows in _blocks():
         marked = [
@@ -72,7 +72,7 @@ def page() -> str:
 
 
 def _blocks() -> list[tuple[str, list[tuple[str, ...]]]]:
-    """Tables with the cells of their keys."""
+    """Return the tables with the cells of their keys."""
     return [
         (f"[{place}]" if place else "Above all tables", [_cells(entry) for entry in group])
         for place, group in groupby(entries(), key=lambda entry: entry.table)

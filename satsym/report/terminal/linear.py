@@ -1,4 +1,4 @@
-"""What an analysis, a regulator or the equilibria of an attitude say to people, as plain text."""
+"""Analyses, regulators and equilibria of attitudes as plain text."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _where(about: Linearisation) -> str:
 
 
 def _point(about: Linearisation) -> list[str]:
-    """The point of linearisation, where it is not zero."""
+    """Return the point of linearisation, where it is not zero."""
     if not about.point.any():
         return []
     rows = [
@@ -107,7 +107,7 @@ def _matrix(letter: str, matrix: Array, rows: Sequence[str], columns: Sequence[s
 
 
 def _mode_table(found: Analysis) -> list[str]:
-    """What each mode is, how long it takes and which states carry it."""
+    """Return a table of modes: name, time, and the states with the largest parts."""
     unit = time_unit(found.about.model.spec)
     bracket = unit and f" [{unit}]"
     header = (say("mode"), "", say("period") + bracket, say("damping ratio"), say("time constant") + bracket)
@@ -173,7 +173,7 @@ def _modes(found: Reach) -> str:
 
 
 def complex_number(value: complex) -> str:
-    """A complex number as tables show it."""
+    """Write a complex number for tables."""
     if value.imag == 0.0:
         return figure(value.real, 10)
     if value.real == 0.0:
@@ -210,7 +210,7 @@ def attitudes_text(found: Attitudes) -> str:
 
 
 def _number(found: Attitudes) -> str:
-    """How many there are, or what the infinitely many are."""
+    """State the number of equilibria, or describe the infinite set of them."""
     whole = found.continuum
     if whole is None:
         return say("<count> attitudes (<number> with complex ones)", count=found.count, number=found.complex)

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 COLUMNS = 80
 """Width of a list where there is no terminal to fill."""
 MOST_NAMES = 4
-"""Names of a model that fit in its line; `satsym models MODEL` has all."""
+"""Largest number of a model's names in its line; `satsym models MODEL` has all."""
 
 
 def models_text(specs: Sequence[ProblemSpec], whole: bool = False) -> str:
-    """Models by subject, a line for each; if whole, one table with states and controls."""
+    """List models by subject, a line for each; if whole, in one table with states and controls."""
     if not whole:
         return _by_subject({spec.name: say(spec.title) for spec in specs}, MODELS)
     header = each("model", "states", "controls", "title")
@@ -31,7 +31,7 @@ def models_text(specs: Sequence[ProblemSpec], whole: bool = False) -> str:
 
 
 def _by_subject(titles: Mapping[str, str], subjects: Mapping[str, str]) -> str:
-    """Names with their titles under each subject, no wider than a terminal or, without one, than :data:`COLUMNS`."""
+    """List names with titles under each subject, as wide as the terminal, or else :data:`COLUMNS`."""
     name_width, blocks = max(map(len, titles), default=0), []
     left = max(SENTENCE, min(WIDEST, room() or COLUMNS) - name_width - 2 * len(GAP))
     for subject, names in by_subject(titles, subjects).items():
@@ -51,7 +51,7 @@ def _few(names: Sequence[str]) -> str:
 
 
 def instances_text(instances: Sequence[Instance], whole: bool = False) -> str:
-    """Instances by subject, a line for each; if whole, one table with what each asks for."""
+    """List instances by subject, a line for each; if whole, in one table with what each optimises."""
     if not whole:
         return _by_subject({one.name: say(one.title) for one in instances}, INSTANCES)
     header = each("instance", "model", "type", "final time", "bounded", "title")
@@ -70,7 +70,7 @@ def instances_text(instances: Sequence[Instance], whole: bool = False) -> str:
 
 
 def model_text(spec: ProblemSpec) -> str:
-    """Everything that an instance of the model can name."""
+    """Describe everything in a model that an instance can name."""
     blocks = [
         [
             say(spec.title),
@@ -88,7 +88,7 @@ def model_text(spec: ProblemSpec) -> str:
 
 
 def _control_set(spec: ProblemSpec) -> str:
-    """What limits the controls, in words."""
+    """Describe the limits of the controls in words."""
     kinds = dict(
         zip(
             ("free", "box", "ball", "annulus", "angle"),
@@ -134,7 +134,7 @@ INSTANCES = {
         "lapan-coupling lapan-roll-yaw lapan-roll-yaw-lqr itb-earth itb-earth-kicked itb-earth-escape"
     ),
 }
-"""Subject -> names of instances, in the order in which they are listed."""
+"""Names of instances by subject, in the order of the list."""
 
 MODELS = {
     "Orbits": "polar_orbit polar_orbit_timed polar_orbit_ball return_above return_in_slot two_body",
@@ -153,11 +153,11 @@ MODELS = {
     ),
     "Small systems": "saddle stable_node three_modes explicit_time time_varying singular_regulator van_der_pol",
 }
-"""Subject -> names of models."""
+"""Names of models by subject."""
 
 
 def by_subject(names: Iterable[str], subjects: Mapping[str, str]) -> dict[str, list[str]]:
-    """Names under their subjects; what has none comes last, under :data:`OTHER`."""
+    """Group names by subject; those without a subject come last, under :data:`OTHER`."""
     left = list(names)
     found = {subject: [name for name in listed.split() if name in left] for subject, listed in subjects.items()}
     listed = {name for group in found.values() for name in group}

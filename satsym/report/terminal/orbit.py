@@ -1,4 +1,4 @@
-"""What the analysis of an orbit says to people, as plain text."""
+"""The analysis of an orbit as plain text."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
 
 
 def _rounded(value: complex, error: float) -> str:
-    """The value without parts that its error may have made of zero."""
+    """Return the value without parts that its error may have caused instead of zero."""
     limit = 10.0 * max(error, 1e-16) * abs(value)
     real, imag = (part if abs(part) > limit else 0.0 for part in (value.real, value.imag))
     return complex_number(complex(real, imag))

@@ -1,4 +1,4 @@
-"""What a proof says to people, as plain text."""
+"""A proof as plain text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a solution, a simulation or a saved result that was examined again says to people, as plain text."""
+"""Solutions, simulations and examined results as plain text."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from satsym.report.results.examination import Examination
 
 ROUNDING = 1e-10
-"""Share of the largest value along the way at which nothing is shown."""
+"""Fraction of the largest value on the way below which a value is shown as zero."""
 
 _PARTLY = "final state wholly or partly free"
 _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final state on the reference", 5: _PARTLY}
-"""By boundary type."""
+"""Descriptions of the ends, by boundary type."""
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
@@ -79,7 +79,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
 
 
 def _metrics(simulation: Simulation) -> dict[str, float]:
-    """Metrics by name; one of a variable is zero where it is nothing beside the largest value of that variable."""
+    """Return metrics by name; a metric is zero where it is negligible beside the variable's largest value."""
     names = simulation.instance.model.spec.state_names
     sizes = {name: float(np.abs(row).max(initial=0.0)) for name, row in zip(names, simulation.x, strict=True)}
     found = {}
@@ -91,7 +91,7 @@ def _metrics(simulation: Simulation) -> dict[str, float]:
 
 
 def with_files(text: str, saved: Sequence[Path]) -> str:
-    """The summary with what was written, and where."""
+    """Add the written files and their place to a summary."""
     if not saved:
         return text
     places: dict[Path, list[str]] = {}
@@ -111,7 +111,7 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
 
 
 def boundary(instance: Instance) -> str:
-    """What the ends are, in words; ranges are no given states, though the answer may lie on their ends."""
+    """Describe the ends in words; a range is not a given state, though the answer may be at its end."""
     kind = instance.boundary_type
     end = _END[kind]
     if instance.ranges:
@@ -121,7 +121,7 @@ def boundary(instance: Instance) -> str:
 
 
 def _objective(instance: Instance, cost: float) -> tuple[str, str]:
-    """The objective in its author's sense and unit; costates keep the sign of a cost, which is said."""
+    """State the objective in the author's sense and unit, and the sign of costates where that differs."""
     spec = spec_of(instance)
     unit = "" if spec.objective_unit == "1" else spec.objective_unit
     text = f"{figure(spec.objective(cost), 10)} {unit}".rstrip()
@@ -133,7 +133,7 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
 
 
 def _interval(solution: Solution) -> list[tuple[str, str]]:
-    """What the best objective lies between, where it takes infinitely many switches."""
+    """State the interval of the best objective, where the optimum switches infinitely often."""
     if solution.interval is None:
         return []
     spec = spec_of(solution.instance)
@@ -143,7 +143,7 @@ def _interval(solution: Solution) -> list[tuple[str, str]]:
 
 
 def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
-    """What was free at the start and among the parameters."""
+    """State the values of initial states, times and parameters that were free."""
     spec = spec_of(instance)
     groups = {Place.INITIAL: (say("initial"), spec.states), Place.PARAMETER: (say("parameter"), spec.parameters)}
     rows = []
@@ -157,7 +157,7 @@ def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
 
 
 def progress_line(iteration: Iteration, instance: Instance) -> str:
-    """One iteration of a solver, for the live line."""
+    """Return one iteration of a solver, for the live line."""
     value = figure(spec_of(instance).objective(iteration.objective), 8)
     residual = f"{iteration.residual:.1e}"
     return say(
@@ -178,7 +178,7 @@ def _effort(solution: Solution) -> str:
 
 
 def _message(status: Status, reason: str, said: str) -> list[str]:
-    """A reason, as it is said, with the advice that is left beside it."""
+    """Return a reason with the advice that it lacks."""
     return wrapped("; ".join(filter(None, [said, message(status.advice_beside(reason))])))
 
 
@@ -187,7 +187,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
 
 
 def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[tuple[str, ...]]:
-    """Below a header, a row for each state: where it starts and ends, where it was to end, and its costate."""
+    """Return a table with a row for each state: initial, final and required value, and its costate."""
     spec = spec_of(instance)
     reference, worth = _reference(instance, times), [0.0] * len(x) if lam is None else _worth(x, lam)
     rows: list[tuple[str, ...]] = [
@@ -213,7 +213,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
 
 
 def _difference(instance: Instance, name: str, value: float, reference: float, row: Array) -> float:
-    """From the reference, modulo a turn where turns do not count; zero where it is rounding."""
+    """Return the difference from the reference, modulo a turn where turns do not count; zero for rounding."""
     turn_does_not_count = name in instance.solver.free_angles and math.isfinite(value)
     off = math.remainder(value - reference, math.tau) if turn_does_not_count else value - reference
     return _without_rounding(off, row)
@@ -230,7 +230,7 @@ def _given(instance: Instance, name: str) -> str:
 
 
 def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
-    """The reference at the final time, where the model has one."""
+    """Return the reference at the final time, where the model has one."""
     if not spec_of(instance).has_reference or not len(times):
         return None
     values: Sequence[float] = instance.model.reference(float(times[-1]), instance.parameters)
@@ -238,7 +238,7 @@ def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
 
 
 def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, ...]]:
-    """Below a header, a row for each control, and one for their norm where it is bounded."""
+    """Return a table with a row for each control, and one for their norm where it is bounded."""
     spec = spec_of(instance)
     rows: list[tuple[str, ...]] = [each("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
@@ -255,7 +255,7 @@ def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, 
 
 
 def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, str, str, str]:
-    """Least and greatest value, the bounds, and how much of the time is spent at one of them."""
+    """Return least and greatest value, the bounds, and the fraction of time spent at one of them."""
     if not len(row):
         return "-", "-", "", ""
     extremes = figure(_without_rounding(float(row.min()), row)), figure(_without_rounding(float(row.max()), row))
@@ -275,7 +275,7 @@ def _switching(solution: Solution, unit: str) -> list[str]:
 
 
 def _events(solution: Solution, unit: str) -> list[str]:
-    """Where path constraints are met and left, points on the way passed, and minimisers of H changed."""
+    """State entries and exits of path constraints, points on the way, and changes of the minimiser of H."""
     jumping = any(one.kind == "jump" for one in solution.events)
     head = say("minimiser of H") if jumping else say("path constraint")
     head = say("point on the way") if spec_of(solution.instance).interior else head
@@ -287,14 +287,14 @@ def _events(solution: Solution, unit: str) -> list[str]:
 
 
 def _worth(x: Array, lam: Array) -> list[float]:
-    """How large each costate would be if its state were worth as much as the one that is worth most."""
+    """Return the size of each costate if its state were worth as much as the most valuable one."""
     widths = [float(np.abs(row).max(initial=0.0)) or 1.0 for row in x]
     most = max((width * float(np.abs(row).max(initial=0.0)) for width, row in zip(widths, lam, strict=True)), default=0)
     return [most / width for width in widths]
 
 
 def _without_rounding(value: float, row: Array, size: float = 0.0) -> float:
-    """A value along the way; zero where it is nothing beside the largest one, or beside what counts as large."""
+    """Return a value, zero where it is negligible beside the largest one, or beside a given size."""
     return 0.0 if abs(value) <= ROUNDING * max(float(np.abs(row).max(initial=0.0)), size) else value
 
 
@@ -307,7 +307,7 @@ def _last(row: Array) -> float:
 
 
 def examination_text(found: Examination, colour: bool) -> str:
-    """What a saved result states, what differs from its files, and the certificate that was computed anew."""
+    """Return the claims of a saved result, the differences from its files, and the new certificate."""
     instance, spec = found.solution.instance, found.solution.instance.model.spec
     stated = message(found.stated.value) if found.stated else say("no certificate")
     heading = say("<name>, model <model>", name=instance.name, model=spec.name)

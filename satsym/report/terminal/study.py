@@ -1,4 +1,4 @@
-"""What a study says to people, as plain text."""
+"""Studies as plain text."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from satsym.studies.running import Advance
 
 
 def progress_line(advance: Advance) -> str:
-    """How far it is, how quick, how long it still takes, and what failed so far."""
+    """Return progress, speed, time left, and failures of a study."""
     parts = [say("<done> of <rows>", done=advance.done, rows=counted(advance.total, "row"))]
     if advance.rate > 0.0:
         parts.append(f"{advance.rate:.3g}/s")
@@ -60,13 +60,13 @@ def study_text(found: Mapping[str, Any]) -> str:
 
 
 def _verdict(counted_verdict: tuple[str, int]) -> tuple[str, str, str]:
-    """A verdict, how many rows have it, and what it claims, in the words of a solution."""
+    """Return a verdict with its number of rows and its claim, in the words of a solution."""
     name, count = counted_verdict
     return message(name), str(count), meaning(Verdict(name))
 
 
 def _branches(found: Mapping[str, int]) -> str:
-    """What comparing neighbouring rows came to."""
+    """State the outcome of comparing neighbouring rows."""
     return say(
         "<branches> of solutions (column branch) were found, and <pairs> of neighbouring rows were compared; "
         "<rows> changed to a branch with a lower cost",

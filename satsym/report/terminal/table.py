@@ -1,4 +1,4 @@
-"""Plain-text tables and paragraphs for people, as wide as there is room for."""
+"""Plain-text tables and paragraphs for people, fitted to the width of the terminal."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from collections.abc import Iterator, Sequence
 
 GAP = "  "
 WIDEST, NARROWEST = 100, 40
-"""Widths of paragraphs, in characters."""
+"""Largest and smallest width of paragraphs, in characters."""
 SENTENCE = 16
-"""Characters that a column of sentences needs, at least."""
+"""Least width of a column of sentences, in characters."""
 
 
 def room() -> int | None:
-    """Characters of a line, of COLUMNS where that is set, else of the terminal; ``None`` where there is neither."""
+    """Return the characters of a line, from COLUMNS or else from the terminal; ``None`` where there is neither."""
     return shutil.get_terminal_size((0, 0)).columns or None
 
 
 def wrapped(text: str, hanging: str = GAP) -> list[str]:
-    """A paragraph, moved in; paths and other long words are never broken.
+    """Break an indented paragraph into lines; paths and other long words are never broken.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def wrapped(text: str, hanging: str = GAP) -> list[str]:
 
 
 def fitting(line: str) -> list[str]:
-    """A heading over several lines where there is no room for it; what is moved in stays, for it is laid out."""
+    """Break a heading over several lines where it does not fit; indented text is laid out already."""
     limit = room()
     if limit is None or len(line) <= limit or line.startswith(" "):
         return [line]
@@ -41,9 +41,9 @@ def fitting(line: str) -> list[str]:
 
 
 def table(rows: Sequence[Sequence[str]], right: Sequence[int] = (), indent: str = GAP) -> list[str]:
-    """Lines of a table whose columns are aligned; columns without any text below the header are left out.
+    """Return the lines of a table with aligned columns, without columns that are empty below the header.
 
-    Where there is no room for all columns, those that are left follow below, beside the first one again.
+    Where there is no room for all columns, the remaining ones follow below, beside the first one again.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _width(rows: Sequence[Sequence[str]], column: int) -> int:
 
 
 def _narrowed(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -> Sequence[Sequence[str]]:
-    """The rows with sentences of the last column over several lines, where that leaves room for all columns."""
+    """Break sentences of the last column over several lines, where that makes room for all columns."""
     limit = room()
     if limit is None or not kept:
         return rows
@@ -91,7 +91,7 @@ def _narrowed(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -
 
 
 def _with_room(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -> Sequence[Sequence[str]]:
-    """The rows with what their first column says over several lines, where else no other would fit beside it."""
+    """Break the first column over several lines, where otherwise no other column would fit beside it."""
     limit = room()
     if limit is None or len(kept) < 2:
         return rows
@@ -108,7 +108,7 @@ def _with_room(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) 
 
 
 def _groups(kept: Sequence[int], width: dict[int, int], indent: int) -> Iterator[list[int]]:
-    """Columns that fit beside each other, each time with the first one."""
+    """Return groups of columns that fit beside each other, each with the first one."""
     limit = room()
     group = list(kept[:1])
     for column in kept[1:]:
@@ -121,12 +121,12 @@ def _groups(kept: Sequence[int], width: dict[int, int], indent: int) -> Iterator
 
 
 def figure(value: float, digits: int = 6) -> str:
-    """A number as tables show it; a dash where there is none."""
+    """Write a number for tables; a dash where there is none."""
     if value != value:
         return "-"
     return f"{value + 0.0:.{digits}g}"
 
 
 def joined(blocks: Sequence[Sequence[str]]) -> str:
-    """Blocks of lines, an empty line between those that have any; headings, which are not moved in, fit."""
+    """Join blocks of lines by empty lines; headings, which are not indented, are fitted."""
     return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
