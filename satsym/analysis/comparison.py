@@ -136,7 +136,7 @@ def _solved(instance: Instance) -> Case:
 
 
 def _of_solution(instance: Instance, solution: Solution, switches: Sequence[float]) -> dict[str, float]:
-    spans = spans_of(instance, solution.times, solution.x, solution.u, switches)
+    spans = spans_of(solution.times, solution.x, solution.u, switches)
     duration = float(solution.times[-1] - solution.times[0])
     return {"transition_time": duration} | totals(instance, spans)
 
@@ -169,7 +169,7 @@ def driven(instance: Instance, progress: Callable[[str], None] = lambda name: No
 
     still, name, found = undriven(instance, share_of("not driven")), instance.driven.control, []
     for case in cases:
-        spans = spans_of(case.instance, case.times, case.x, case.u, case.switching_times)
+        spans = spans_of(case.times, case.x, case.u, case.switching_times)
         run = reached(
             instance,
             Driver(case.instance, spans, case.metrics.get("impulse", 0.0)),

@@ -159,7 +159,7 @@ def _code_of(derivation: Derivation) -> Code:
     if not is_minimum(derivation):
         raise ValueError(f"{derivation.name}: kernels are generated from the minimum form of a problem")
     found, constants = symbols(derivation), definitions_of(derivation.model)
-    names = _names(derivation, {s for argument in ARGUMENTS for s in found.of(argument)} | set(constants))
+    names = _names({s for argument in ARGUMENTS for s in found.of(argument)} | set(constants))
     return Code(
         Symbols(**{f.name: _renamed(getattr(found, f.name), names) for f in fields(found)}),
         tuple(replace(f, value=f.value.xreplace(names)) for f in all_functions(derivation)),
@@ -169,7 +169,7 @@ def _code_of(derivation: Derivation) -> Code:
     )
 
 
-def _names(derivation: Derivation, present: set[sp.Symbol]) -> dict[sp.Symbol, sp.Symbol]:
+def _names(present: set[sp.Symbol]) -> dict[sp.Symbol, sp.Symbol]:
     taken = NEEDED | {s.name for s in present} | {f"{group}_mid" for group in ARGUMENTS}
     clashing = sorted((s for s in present if s.name != "t" and _clashes(s.name)), key=lambda s: s.name)
     names: dict[sp.Symbol, sp.Symbol] = {}

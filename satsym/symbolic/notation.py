@@ -108,12 +108,6 @@ def free_letter(letters: Iterable[str], variables: Iterable[Variable]) -> str:
     return letter
 
 
-def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
-    """Return a real symbol, and enter it into the notation."""
-    notation[name] = latex
-    return sp.Symbol(name, real=True)
-
-
 rate_of = named("d_{}")
 """The symbol for dx/dt."""
 costate_of = named("lambda_{}")

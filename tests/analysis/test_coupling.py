@@ -22,7 +22,7 @@ def driver():
     case = case_of(instance.load("lapan-minimum-time"))
     from satsym.analysis.classical.signals import spans_of
 
-    return Driver(case.instance, spans_of(case.instance, case.times, case.x, case.u, case.switching_times), 0.0)
+    return Driver(case.instance, spans_of(case.times, case.x, case.u, case.switching_times), 0.0)
 
 
 @pytest.mark.slow

@@ -86,10 +86,10 @@ def excesses(instance: Instance, metrics: dict[str, float]) -> str:
     return "; ".join(found)
 
 
-def spans_of(instance: Instance, times: Array, x: Array, u: Array, switches: Sequence[float]) -> list[Span]:
+def spans_of(times: Array, x: Array, u: Array, switches: Sequence[float]) -> list[Span]:
     """Split a solution at the times at which its controls meet or leave bounds, or jump.
 
-    States are interpolated by cubics with exact slopes; controls by straight lines between nodes, which are
+    States are interpolated by cubic splines; controls by straight lines between nodes, which are
     extrapolated to the ends of each part.
     """
     borders = [times[0], *sorted({s for s in switches if times[0] < s < times[-1]}), times[-1]]
