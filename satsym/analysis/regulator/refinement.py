@@ -132,7 +132,7 @@ def lyapunov(closed: Array, cost: Array) -> tuple[Array, NDArray[np.complexfloat
 
 
 def _unsorted(*_: float) -> bool:
-    """Return the options of Schur forms whose eigenvalues may be in any order."""
+    """Select every eigenvalue, for Schur forms whose eigenvalues may be in any order."""
     return True
 
 

@@ -134,7 +134,7 @@ class Argmin(sp.Function):
 
 
 class Middle(sp.Function):
-    """``Middle(lower, upper)``: the middle of an interval of angles, or of its first turn if it is longer."""
+    """``Middle(lower, upper)``: the middle of an interval of angles, or of one turn of a longer one."""
 
     nargs = 2
     is_real = True

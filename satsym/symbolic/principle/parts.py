@@ -23,7 +23,7 @@ FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add 
 
 
 def minimum_norm_of(part: Part) -> Variable:
-    """Return the variable of the minimum norm of a ball in which a vector may vanish; its default is zero.
+    """Return the variable of the minimum norm of a ball in which a vector may vanish.
 
     With equal minimum and maximum norms, the law gives a vector of this norm.
     """

@@ -141,7 +141,7 @@ def control_law(so_far: Derivation) -> Step:
 
 
 def smoothed_law(so_far: Derivation) -> Step:
-    """Derive the continuous law of the regularised problem, which weighs u^2 a little and |u| a little less."""
+    """Derive the continuous law of the regularised problem, which weighs u^2 a little and only a fraction of |u|."""
     problem, found = _problem(so_far), parts(so_far)
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
