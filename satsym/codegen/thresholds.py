@@ -40,7 +40,7 @@ def beside_thresholds(
     places: Iterable[Place],
     digits: int,
 ) -> Iterator[Place]:
-    """Pairs of places between which one condition in the text of a function changes.
+    """Find pairs of places between which one condition in the text of a function changes.
 
     Parameters
     ----------

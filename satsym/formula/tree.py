@@ -247,7 +247,7 @@ def each(formula: Node | Equality, function: Callable[[Node], Node]) -> Node | E
 @overload
 def each(formula: Formula, function: Callable[[Node], Node]) -> Formula: ...
 def each(formula: Formula, function: Callable[[Node], Node]) -> Formula:
-    """The formula with another expression in the place of each part."""
+    """Replace each expression in a formula by the result of a function."""
     if isinstance(formula, tuple):
         return tuple(tuple(map(function, line)) for line in formula)
     if isinstance(formula, Equality):

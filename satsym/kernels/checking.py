@@ -112,7 +112,7 @@ def _literal(node: ast.AST) -> None:
 
 
 def _fault(spec: ProblemSpec) -> str:
-    """What no model has, though its fields are of the right types."""
+    """Describe what no model has, though its fields are of the right types; empty for a possible model."""
     if not _NAME.match(spec.name):
         return "a name that is none"
     if spec.has_cost == (spec.control_set is None):
@@ -169,7 +169,7 @@ def _functions(nodes: list[ast.stmt], spec: ProblemSpec) -> list[ast.FunctionDef
 
 
 def _header(node: ast.FunctionDef, signature: Signature, batch: bool) -> None:
-    """Everything about a function but its body: no decorators, annotations, or defaults that could run."""
+    """Check everything about a function but its body: no decorators, annotations, or defaults that could run."""
     arguments = ", ".join((*signature.arguments, "out=None") if batch else signature.arguments)
     plain = not (node.decorator_list or node.returns or getattr(node, "type_params", None))
     if not plain or text_of(node.args) != arguments:

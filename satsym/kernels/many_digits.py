@@ -49,7 +49,7 @@ def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]
 
 
 def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function, dict[int, Any]]]:
-    """The functions of a module that have conditions, each with what it fills when it is called.
+    """Return the functions of a module that have conditions, each with the record that its calls fill.
 
     That is, by the number of a condition in the function, the difference of both its sides. Conditions are comparisons,
     steps, choices of the smaller or larger number, and zero times a root, which is no number where the law is none.

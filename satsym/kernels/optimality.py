@@ -281,7 +281,7 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
 
 
 def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
-    """Relations on the boundary of a state constraint: its rates stay zero under the multiplier and control there."""
+    """Yield relations on the boundary of a state constraint, whose rates stay zero under the multiplier there."""
     vanishing = of("path_vanishing", u=_constrained_law(of))
     found, terms = _rates_on_boundary(of, which)
     if order > 1:
@@ -297,7 +297,7 @@ def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
 
 
 def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
-    """Rates of what vanishes along the extremal on the boundary of one constraint, and sizes of their terms."""
+    """Return the rates along the extremal of quantities that vanish on one boundary, and the sizes of their terms."""
     law = _constrained_law(of)
     eta, push = of("path_multiplier", u=law)[which], of("path_gradient")[which]
     moving, falling = of("dynamics", u=law), of("costate_rate", u=law)

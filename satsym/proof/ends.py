@@ -221,7 +221,7 @@ def kernel_of(slopes: Matrix) -> Matrix:
 
 
 def positive(form: Matrix) -> bool:
-    """Whether a symmetric ball matrix is positive definite, by the pivots of its elimination."""
+    """Tell whether a symmetric ball matrix is positive definite, by the pivots of its elimination."""
     n = form.nrows()
     a: Any = [[form[i, j] for j in range(n)] for i in range(n)]
     for k in range(n):

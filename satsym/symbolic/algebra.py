@@ -168,7 +168,7 @@ def _alone(expression: sp.Expr) -> dict[sp.Expr, sp.Symbol]:
 
 
 def _degree(expression: sp.Expr, functions: set[sp.Expr]) -> float:
-    """Largest possible degree of an expression as a polynomial in these functions; infinite where it is none."""
+    """Bound the degree of an expression as a polynomial in these functions; infinite where it is none."""
     if expression in functions:
         return 1
     degrees = [_degree(e, functions) for e in expression.args]

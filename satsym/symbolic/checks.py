@@ -233,5 +233,5 @@ def agree(
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:
-    """Numeric partial derivatives of a vector function by central differences in high precision."""
+    """Differentiate a vector function numerically by central differences in high precision."""
     return slopes(lambda h: function({**point, symbol: point[symbol] + h}))

@@ -118,7 +118,7 @@ def load(path: Path) -> tuple[Problem | Model, ...]:
 
 
 def problem(name: str) -> tuple[Problem | Model, Path]:
-    """The problem of a shipped name, ``FILE.py`` where it states a single one, or ``FILE.py:NAME``; and its file.
+    """Return the problem of a shipped name, or of ``FILE.py`` or ``FILE.py:NAME``, with its file.
 
     Raises
     ------

@@ -31,7 +31,7 @@ t = sp.Symbol("t", real=True)
 
 
 def symbols_of(variables: Iterable[Variable]) -> tuple[sp.Symbol, ...]:
-    """Sympy symbols of declared variables: real, and positive where they are declared so."""
+    """Return the symbols of declared variables: real, and positive where they are declared so."""
     return tuple(sp.Symbol(v.symbol, real=True, positive=True if v.positive else None) for v in variables)
 
 

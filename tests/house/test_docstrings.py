@@ -12,6 +12,14 @@ import pytest
 DANGLING = re.compile(r"(The same|Of|That|Those|These)\b")
 """Beginnings of docstrings that speak of something which only their surroundings name."""
 
+VERBLESS = re.compile(
+    r"(What|Whether|How|Where|Which|When|Why|Likewise|It|Its|One|As|By|For|The|An?|All|Each|Everything)\b"
+)
+"""Beginnings of docstrings of functions that name something instead of saying what the function does."""
+
+NAMING = ("auditing", "solvers")
+"""Rooms in which docstrings of functions may name what is returned, as that of a measurement does."""
+
 BARE = frozenset(
     "AGAIN ALIKE ALONE APART ASIDE BEYOND CLEAR CLOSE EACH ENOUGH FAINT FAR FAST FEW HUGE LARGEST LEAST LONG LONGEST "
     "MANY MOST NEAR NEARLY SAME SETTLED SHORT SMALL SMALLEST STEEP SURELY TINY".split()
@@ -34,6 +42,12 @@ def dangling(source: str) -> list[int]:
     return [line for line, text in docstrings(source) if DANGLING.match(text)]
 
 
+def verbless(source: str) -> list[int]:
+    """Lines of functions whose docstrings do not begin with a verb."""
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    return [node.lineno for node in functions if VERBLESS.match(ast.get_docstring(node) or "")]
+
+
 def bare(source: str) -> list[str]:
     """Constants of a module whose names do not say what they limit."""
     assigned = [node for node in ast.parse(source).body if isinstance(node, ast.Assign)]
@@ -44,6 +58,17 @@ def bare(source: str) -> list[str]:
 def test_docstrings_can_be_understood_out_of_their_place(repository: Path) -> None:
     found = {path: dangling(path.read_text("utf-8")) for path in sorted((repository / "satsym").rglob("*.py"))}
     assert [f"{path}:{line}" for path, lines in found.items() for line in lines] == []
+
+
+def test_docstrings_of_functions_say_what_these_do(repository: Path) -> None:
+    house = repository / "satsym"
+    paths = [path for path in sorted(house.rglob("*.py")) if path.relative_to(house).parts[0] not in NAMING]
+    found = {path: verbless(path.read_text("utf-8")) for path in paths}
+    assert [f"{path}:{line}" for path, lines in found.items() for line in lines] == []
+
+
+def test_a_docstring_without_a_verb_would_be_seen() -> None:
+    assert verbless('def f():\n    """The gain."""\n\n\ndef g():\n    """Return the gain."""\n') == [1]
 
 
 def test_names_of_constants_say_what_they_limit(repository: Path) -> None:

@@ -125,7 +125,7 @@ def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
 
 
 def law(about: Linearisation, found: Regulator) -> Law:
-    """The law u = -K (x - c(t)), about the reference or the equilibrium c."""
+    """Return the law u = -K (x - c(t)) about the reference or the equilibrium c."""
     model, p, point = about.model, about.parameters, about.point.tolist()
     places = [about.system.inputs.index(name) for name in found.system.inputs]
     zeros = [0.0] * len(about.system.inputs)

@@ -314,7 +314,7 @@ class Flow(NamedTuple):
 
 
 def flow(A: Array, G: Array, Q: Array, length: float) -> Flow:
-    """The flow over a length of time.
+    """Return the flow of a linear-quadratic problem over a length of time.
 
     Raises
     ------

@@ -123,7 +123,7 @@ class Step:
 
 
 def fewest(kernels: Kernels) -> Step:
-    """The step of a model with the fewest operations of those that are tried.
+    """Return the step of a model with the fewest operations among those tried.
 
     Raises
     ------

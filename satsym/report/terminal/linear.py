@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def analysis_text(found: Analysis, colour: bool = False) -> str:
-    """Summary of an analysis."""
+    """Summarise an analysis."""
     about, system = found.about, found.about.system
     verdict = message(found.stability.verdict or "undecided")
     if colour:
@@ -52,7 +52,7 @@ def analysis_text(found: Analysis, colour: bool = False) -> str:
 
 
 def regulator_text(design: Design) -> str:
-    """Summary of a regulator."""
+    """Summarise a regulator."""
     found, about, system = design.regulator, design.about, design.regulator.system
     over = say("u = -K x for an infinite horizon")
     if found.horizon is not None:
@@ -183,7 +183,7 @@ def complex_number(value: complex) -> str:
 
 
 def attitudes_text(found: Attitudes) -> str:
-    """Summary of the equilibria."""
+    """Summarise the equilibria of an attitude."""
     kinds = Counter(one.kind.value for one in found.equilibria)
     listed = ", ".join(f"{count} {message(kind)}" for kind, count in sorted(kinds.items()))
     header = (*each("nadir in body axes", "normal of the orbit, reversed"), "")

@@ -23,7 +23,7 @@ DIGITS = 10
 
 
 def orbit_text(found: Survey, colour: bool = False) -> str:
-    """Summary of an orbit.
+    """Summarise an orbit.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ _COLOURS = {Outcome.PROVED: 32, Outcome.NOT_PROVED: 31, Outcome.BEYOND: 33}
 
 
 def proof_text(proof: Proof, colour: bool = False) -> str:
-    """Summary of a proof."""
+    """Summarise a proof."""
     status = message(proof.status.value)
     if colour:
         status = f"\x1b[{_COLOURS[proof.status]}m{status}\x1b[0m"

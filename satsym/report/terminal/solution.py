@@ -33,7 +33,7 @@ _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final st
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
-    """Summary of a solution."""
+    """Summarise a solution."""
     instance = solution.instance
     unit = time_unit(spec_of(instance))
     facts = [
@@ -61,7 +61,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
 
 
 def simulation_text(simulation: Simulation, colour: bool = False) -> str:
-    """Summary of a simulation; see :func:`solution_text`."""
+    """Summarise a simulation; see :func:`solution_text`."""
     instance = simulation.instance
     unit = time_unit(spec_of(instance))
     facts = [(say("final time"), f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]

@@ -26,7 +26,7 @@ def progress_line(advance: Advance) -> str:
 
 
 def study_text(found: Mapping[str, Any]) -> str:
-    """Summary of a study from what its result.json holds."""
+    """Summarise a study from its result.json."""
     failed = found["rows"] - found["statuses"].get(Status.CONVERGED.value, 0)
     lines = [
         say(

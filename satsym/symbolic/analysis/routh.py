@@ -69,7 +69,7 @@ class RouthArray:
 
 
 def routh(coefficients: Sequence[Any]) -> RouthArray:
-    """The Routh array of a polynomial.
+    """Return the Routh array of a polynomial.
 
     Parameters
     ----------

@@ -81,17 +81,17 @@ class Spectrum:
 
     @property
     def closed_form(self) -> bool:
-        """Whether every eigenvalue has a closed form, roots of numbered polynomials not counted."""
+        """Tell whether every eigenvalue has a closed form; numbered roots of polynomials have none."""
         return all(f.roots and not any(r.has(sp.CRootOf) for r in f.roots) for f in self.factors)
 
     @property
     def eigenvalues(self) -> tuple[Eigenvalue, ...]:
-        """Each distinct eigenvalue that has a closed form."""
+        """Return each distinct eigenvalue that has a closed form."""
         return tuple(Eigenvalue(root, sum(f.blocks), len(f.blocks), f.blocks) for f in self.factors for root in f.roots)
 
 
 def spectrum(a: sp.MatrixBase) -> Spectrum:
-    """The characteristic polynomial of a matrix, its factors, and what follows from them.
+    """Return the characteristic polynomial of a matrix, with its factors and their roots.
 
     Raises
     ------

@@ -51,7 +51,7 @@ class Newton(Particle):
         )
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
-        """Steps from Newton's law to the first-order form, by differentiation and projection."""
+        """List the steps from Newton's law to the first-order form, by differentiation and projection."""
         return (unit_vectors, position, velocity, acceleration, forces, newton, equations_of_motion, first_order)
 
     def misfits(self) -> Iterator[str]:

@@ -99,7 +99,7 @@ MOST_ITERATIONS = 100
 
 
 def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]], Any]:
-    """A function that evaluates a matrix at a point, in the working precision of mpmath."""
+    """Return a function that evaluates a matrix at a point, in the working precision of mpmath."""
     values, rows, columns = numeric(list(matrix)), matrix.rows, matrix.cols
 
     def at(point: Mapping[sp.Symbol, Any]) -> Any:

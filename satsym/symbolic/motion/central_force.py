@@ -69,7 +69,7 @@ def central_force(so_far: Derivation) -> Step | None:
 
 
 def gravity_gradient(so_far: Derivation) -> Step | None:
-    """The blocks of the Jacobian along inertial axes: A = (0, I; G, 0), with G = k (3 r r' / |r|^5 - I / |r|^3).
+    """Derive the Jacobian along inertial axes: A = (0, I; G, 0), with G = k (3 r r' / |r|^5 - I / |r|^3).
 
     G is read off the derived entries: one number each that multiplies r r' and I, as functions of the distance alone.
     """

@@ -244,7 +244,7 @@ def _of(generalised: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
 
 
 def _antiderivative(function: sp.Expr, by: sp.Symbol) -> sp.Expr | None:
-    """An antiderivative in closed form, by substitution of a part w of the function: ∫ h(w) w' = ∫ h dw."""
+    """Return an antiderivative in closed form, by substitution of a part w of the function: ∫ h(w) w' = ∫ h dw."""
     parts = [part for part in sp.preorder_traversal(function) if part.has(by) and not part.is_Add]
     inner = {argument for part in parts for argument in part.args if argument.is_Add and argument.has(by)}
     for w in (*sorted(inner, key=sp.default_sort_key), by):
