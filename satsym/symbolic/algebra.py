@@ -80,8 +80,6 @@ def simplified(expression: sp.Expr) -> sp.Expr:
 
     Sums of products of symbols and their powers are multiplied out, for which there is only one form; squares of
     cosines are first replaced by sines.
-
-    Of those there is but one way to write them; squares of cosines are put in terms of sines to get there.
     """
     named, steep = _steep_named(expression)
     return _simplified(named).xreplace(steep)
@@ -269,8 +267,6 @@ def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
 
     An expression that would be too long when multiplied out is only split into such terms, and its coefficients stay as
     they are.
-
-    What would be too long when multiplied out is only parted, and its coefficients are left as they are.
     """
     named, steep = _steep_named(sp.sympify(expression))
     expanded = _multiplied_out(named)
@@ -305,10 +301,10 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
 
     Sympy treats e^(500 h) as the 500th power of e^h and e^(2.34 h) as the 117th power of e^(h/50).
 
-    And e^(2.34 h) is the 117th power of e^(h/50). Those whose exponents are small multiples of a common one are powers
-    of one symbol. So are named those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as
-    e^(-(x - 5/2)^2): their factors have no moderate numbers of their own. Those that divide by a sum, such as
-    e^(-x^2/(x^2 + 0.7)), are steep as soon as sympy multiplies by its denominator.
+    Exponentials whose exponents are small multiples of a common one become powers of one symbol. Exponentials that
+    scale a difference, such as e^(-k (h - 1)), or contain a number in it, such as e^(-(x - 5/2)^2), are replaced as
+    well, because their factors have no moderate numbers of their own. Those that divide by a sum, such as
+    e^(-x^2/(x^2 + 0.7)), are steep as soon as sympy multiplies by the denominator.
     """
     scaled = [e for e in expression.atoms(sp.exp) if not e.args[0].is_number]
     steep = {e for e in scaled if any(map(_is_steep, e.args[0].as_coefficients_dict().values()))}
