@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/inspection.py. Do not edit: mend tha
 Source: ../derivations/examples/inspection.py ea44ba41bc01ebbda8bec5ed189f09d4
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
 Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: 10286cb81981cd569c9861396335f16992631ddc1285bd82c6342c26ba05b1d2
+Digest: 1cc6587526eb6ef9636ab23ff4642273a8e777ba896a3173e9d6c9fa93434154
 """
 
 import math
@@ -337,7 +337,7 @@ def boundary_control(t, x, lam, p, bounds):
 
 
 def interior(t, x, p):
-    """What vanishes at points on the way, those of the first one first."""
+    """What vanishes at waypoints, those of the first one first."""
     x1, x2, x3, x4 = x
     sigma, omega, above, ahead = p
     return (
@@ -1028,7 +1028,7 @@ def boundary_control_batch(t, x, lam, p, bounds, out=None):
 
 
 def interior_batch(t, x, p, out=None):
-    """What vanishes at points on the way, those of the first one first. Batch form."""
+    """What vanishes at waypoints, those of the first one first. Batch form."""
     x1, x2, x3, x4 = x
     sigma, omega, above, ahead = p
     if out is None:

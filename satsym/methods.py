@@ -135,7 +135,7 @@ METHODS = {
         ),
         Method(
             BOUNDARY_ARCS,
-            "exact arcs, for path constraints and points on the way",
+            "exact arcs, for path constraints and waypoints",
             "satsym.solvers.by_search:boundary_arcs",
             constrained=True,
             automatic=True,
@@ -172,7 +172,7 @@ def refusal(name: str, asked: Asked) -> str:
         return f'solver.method: "{name}" is not available; use {available}'
     method, instead = METHODS[name], automatic(spec).name
     if method.constrained != spec.in_arcs:
-        what = "points on the way" if spec.interior else f"{'' if spec.in_arcs else 'no '}path constraints"
+        what = "waypoints" if spec.interior else f"{'' if spec.in_arcs else 'no '}path constraints"
         return f'solver.method: the model has {what}; use "{instead}"'
     if spec.switching and not (method.switching or method.constrained):
         return (

@@ -78,9 +78,9 @@ class Kind(str, Enum):
     DURATIONS = "duration"
     STARTS = "seeded starts"
     ARCS = "structure of boundary arcs"
-    TIMES = "other times of points on the way"
+    TIMES = "other times at waypoints"
     ENDS = "other limits of the end"  # in results that version 0.2 saved
-    UNKNOWNS = "other values of what is free"
+    UNKNOWNS = "other values of the free quantities"
 
 
 @dataclass(frozen=True)

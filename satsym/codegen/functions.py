@@ -186,7 +186,7 @@ def _of_interior(derivation: Derivation) -> list[Function]:
     stated = sp.Matrix(list(interior.named(derivation.problem).values()))
     by_state = stated.jacobian(symbols_of(derivation.model.states))
     return [
-        _vector("interior", "What vanishes at points on the way, those of the first one first.", "t x p", stated),
+        _vector("interior", "What vanishes at waypoints, those of the first one first.", "t x p", stated),
         _matrix("interior_gradient", "Its derivatives by the states, row by row.", "t x p", by_state),
         _vector("interior_drift", "Its derivatives by time.", "t x p", stated.diff(t)),
     ]

@@ -340,7 +340,7 @@ def refuse(case: Instance) -> None:
         (spec.path_constraints and spec.control_set != "free", "path constraints together with bounds of the controls"),
         (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
-        (spec.interior, "points on the way"),
+        (spec.interior, "waypoints"),
         (spec.chattering, "chattering controls"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
         (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),

@@ -182,8 +182,8 @@ def _refuse_too_large(study: Study, folder: Path) -> None:
     free = shutil.disk_usage(place).free
     if wanted > free:
         raise BadInput(
-            f"{printable(str(folder))}: the trajectories of {rows} rows need {wanted / 1e9:.3g} GB, but only "
-            f"{free / 1e9:.3g} GB are free; ask for fewer rows or steps, or for no trajectories"
+            f"{printable(str(folder))}: the trajectories of {rows} cases need {wanted / 1e9:.3g} GB, but only "
+            f"{free / 1e9:.3g} GB are free; request fewer cases or steps, or leave out the trajectories"
         )
 
 

@@ -57,7 +57,7 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.called}: {refusal}")
     if spec.in_arcs and instance.free:
-        key, beside = instance.free[0].key, "points on the way" if spec.interior else "path constraints"
+        key, beside = instance.free[0].key, "waypoints" if spec.interior else "path constraints"
         raise BadInput(f'{instance.called}: {key}: "free" cannot be combined with {beside}; write a number')
     found = partial(_with_free, examined=examined)
     return _solved_in_steps(instance, progress, found) if instance.continuation else found(instance, progress)
@@ -230,7 +230,8 @@ def _confirmed(swept: Solution, method: Method, progress: Progress | None, deadl
         return swept
     left = hurried(starting_from(swept), deadline)
     if left is None:
-        return replace(swept, status=Status.TIME_LIMIT, message="time was up before the sweep's answer was confirmed")
+        late = "the time limit was reached before the result of the sweep was confirmed"
+        return replace(swept, status=Status.TIME_LIMIT, message=late)
     again = _solved(method, left, progress)
     if again.status.answered or again.status is Status.NO_MINIMISER:
         return replace(again, instance=swept.instance)

@@ -129,7 +129,8 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None) 
         return found
     left = hurried(instance, deadline)
     if left is None:
-        return replace(found, status=Status.TIME_LIMIT, message="time was up before an extremal was found")
+        late = "the time limit was reached before an extremal was found"
+        return replace(found, status=Status.TIME_LIMIT, message=late)
     again = solving.solve(left, progress)
     if again.status in (Status.NOT_CONVERGED, Status.TIME_LIMIT) and np.isfinite(found.x).all():
         return found

@@ -121,7 +121,8 @@ class Trials:
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
-            return replace(nothing, message="time was up before all combinations of active limits were tried")
+            late = "the time limit was reached before all combinations of active limits were tried"
+            return replace(nothing, message=late)
         try:
             found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free

@@ -190,7 +190,7 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
             message = f"no convergence in {counted(limits.iterations, 'iteration')}"
             return Run(state, Status.NOT_CONVERGED, message, tuple(history))
         if limits.expired:
-            message = f"time was up after {counted(len(history) - 1, 'iteration')}"
+            message = f"time limit reached after {counted(len(history) - 1, 'iteration')}"
             return Run(state, Status.TIME_LIMIT, message, tuple(history))
         try:
             state = method.step(state)
@@ -199,7 +199,7 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
         history.append(method.measure(state, len(history)))
 
 
-MESSAGE = "time was up while {steps} steps were computed"
+MESSAGE = "time limit reached while {steps} steps were computed"
 
 
 def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:

@@ -105,7 +105,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:
     """No extremal, and why: for want of time where that is up."""
     if limits.expired:
-        return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time was up: {message}", steps)
+        return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time limit reached: {message}", steps)
     return Extremal(problem, path, float("inf"), Status.NOT_CONVERGED, message, steps)
 
 

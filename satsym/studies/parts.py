@@ -93,7 +93,7 @@ class Parts:
                 break
             if found.get("study") != self._study:
                 raise BadInput(
-                    f"{printable(self._lines.name)}: contains rows of another study; give another folder, or "
+                    f"{printable(self._lines.name)}: contains cases of another study; give another folder, or "
                     "remove them"
                 )
             if all(status not in PASSING for _, status, *_ in found["rows"]):

@@ -55,7 +55,7 @@ def design(asked: StudyTable, instance: Instance) -> Design:
     else:
         found = _sample(asked, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
     if found.count > MOST_ROWS:
-        raise BadInput(f"the study has {found.count} rows, but at most {MOST_ROWS} are allowed; write fewer values")
+        raise BadInput(f"the study has {found.count} cases, but at most {MOST_ROWS} are allowed; write fewer values")
     return found
 
 
@@ -95,7 +95,7 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
 
 def _sample(asked: StudyTable, distributions: tuple[Distribution, ...]) -> Sample:
     if asked.sample is None:
-        raise BadInput("the number of rows to draw is missing; write --sample N")
+        raise BadInput("the number of cases in the sample is missing; write --sample N")
     return Sample(distributions, asked.sample, Sampling(asked.method or Sampling.SOBOL), asked.seed or 0)
 
 

@@ -154,5 +154,5 @@ def _joined(apart: dict[int, dict[int, Row]], chunk: Chunk, row: Row, count: int
 
 def _lost() -> Row:
     """Return the row that stands for one whose workers died."""
-    message = f"{MOST_DEATHS} workers died while they computed this row; --resume tries it again"
+    message = f"{MOST_DEATHS} workers died while they computed this case; --resume tries it again"
     return rows.failed("", Failure.WORKER_DIED, message)

@@ -273,7 +273,7 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
 
 
 def _refuse_interior(name: str) -> None:
-    message = "interior: points on the way are derived where H is quadratic in the controls; weigh their squares"
+    message = "interior: waypoints are derived where H is quadratic in the controls; weigh their squares"
     raise DerivationError(f"{name}: {message}", ("interior",))
 
 

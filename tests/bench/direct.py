@@ -62,7 +62,7 @@ def stated(problem: Problem, case: Instance) -> Stated:
     except ImportError:
         raise Missing("casadi is not installed (the bench extra has it)") from None
     if problem.interior:
-        raise Missing("points on the way need phases")
+        raise Missing("waypoints need phases")
     names = {"Abs": ca.fabs, "abs": ca.fabs, "acos": ca.acos, "asin": ca.asin, "atan": ca.atan, "Max": ca.fmax}
     names |= {name: getattr(ca, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "atan2", "tanh")}
     model = problem.model

@@ -87,4 +87,4 @@ def test_a_certificate_counts_the_curvature_at_a_free_start(tf: float, verdict: 
     certificate = certify(resting, compared=False)
     assert certificate is not None
     assert certificate.verdict is verdict
-    assert any(check.name == "second-order condition at the free start" for check in certificate.checks)
+    assert any(check.name == "second-order condition at the free initial point" for check in certificate.checks)

@@ -248,9 +248,9 @@ def test_html_holds_no_foreign_markup_and_nothing_from_elsewhere() -> None:
 
 
 def test_numbers_in_tables_stay_in_one_line_and_words_do_not() -> None:
-    shown = html.table(("condition", "measured", "limit"), [("conditions at both ends met", -4e-13, 1e-9)])
+    shown = html.table(("condition", "measured", "limit"), [("boundary conditions satisfied", -4e-13, 1e-9)])
     assert shown.count("white-space: nowrap") == 2
-    assert "<td>conditions at both ends met</td>" in shown
+    assert "<td>boundary conditions satisfied</td>" in shown
     assert "nowrap" not in html.facts({"method": "collocation, 4 iterations"})
 
 

@@ -31,7 +31,7 @@ def body(*parameters: Any) -> Any:
 
 EFFORT = (u**2 + w**2) / 2
 STATED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
-    "points on the way": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "points on the way"),
+    "waypoints": ({"interior": {"p": (q - 2,)}}, {"final": END, "tf": 1.0}, "waypoints"),
     "sets of two kinds": (
         {"control_sets": {"one": Box("u"), "other": Ball("w")}},
         {"final": END, "tf": 1.0, "control": {"u": [-9.0, 9.0], "other": {"max_norm": 9.0}}},

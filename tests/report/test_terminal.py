@@ -129,7 +129,7 @@ def test_every_condition_that_can_hold_is_stated_as_what_holds() -> None:
     assert len(names) > 30
     assert names - _HOLDS.keys() - {"second variation unknown: the control jumps between minimisers"} == {
         "another minimiser of H remains equally good",  # made only where it fails
-        "points on the way that are not passed",
+        "waypoints that are not passed",
     }
 
 
@@ -140,7 +140,7 @@ def test_a_condition_that_fails_says_what_is_wrong() -> None:
     )
     assert statement(held) == "generated kernels agree"
     assert statement(failed) == "generated kernels do not agree"
-    assert statement(Check("cheaper by: revolutions", 0.0, 1e-9)) == "nothing cheaper: revolutions"
+    assert statement(Check("cheaper by: revolutions", 0.0, 1e-9)) == "no cheaper competitor: revolutions"
     assert statement(Check("cheaper by: revolutions", 1.0, 1e-9)) == "cheaper by: revolutions"
 
 
@@ -151,7 +151,7 @@ def test_a_condition_that_fails_says_what_is_wrong() -> None:
         (Verdict.CERTIFIED, 1, False, "certified (strict local minimum; the one competing solution is not cheaper)"),
         (Verdict.CERTIFIED, 2, True, "certified (strict local minimum; none of 2 competing solutions is better)"),
         (Verdict.CERTIFIED, 0, False, "certified (strict local minimum)"),
-        (Verdict.FAILED, 8, False, "failed (a condition of optimality is violated)"),
+        (Verdict.FAILED, 8, False, "failed (an optimality condition is violated)"),
     ],
 )
 def test_a_verdict_says_what_it_claims(verdict: Verdict, solved: int, maximise: bool, said: str) -> None:

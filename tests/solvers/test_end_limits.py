@@ -253,8 +253,8 @@ def test_an_end_that_pulls_and_a_range_that_is_left_fail():
     turned = replace(found.instance, met={"x": Side.UPPER}, ranges={"x": (-5.0, 1.0)})
     moved = replace(found.instance, ranges={"x": (1.0, 2.0), "v": (2.0, 3.0)})
     for case, name in (
-        (turned, "negative multiplier of a limit at the end"),
-        (moved, "a limit at the end is violated"),
+        (turned, "negative multiplier of a terminal limit"),
+        (moved, "a terminal limit is violated"),
     ):
         certificate = certify(replace(found, instance=case))
         assert certificate is not None

@@ -75,7 +75,7 @@ def test_a_long_trajectory_that_is_not_done_in_time_is_a_time_limit(
     monkeypatch.setattr(Limits, "check", check)  # between blocks of steps, and nowhere else
     found = solve(asked("soft-return", steps=BLOCK + 1, method=method, backend="python"))
     assert (found.status, found.method, found.certificate) == (Status.TIME_LIMIT, method, None)
-    assert "time was up while 10001 steps were computed" in found.message
+    assert "time limit reached while 10001 steps were computed" in found.message
     assert not np.isfinite(found.objective)
 
 
@@ -105,7 +105,7 @@ def test_a_simulation_that_is_not_done_in_time_is_a_time_limit(
     clock(looks)
     found = simulate(asked(name, steps=2 * BLOCK), feedback)
     assert found.status is Status.TIME_LIMIT
-    assert "time was up" in found.message
+    assert "time limit reached" in found.message
     assert len(found.times) == found.x.shape[1] == found.u.shape[1]
 
 

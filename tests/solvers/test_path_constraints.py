@@ -274,7 +274,7 @@ def test_only_what_no_motion_can_keep_is_a_contradiction(of: Problem, given: dic
 def test_relaxed_path_and_arcs_have_one_time_together():
     said = solved(SPEED, parameters={"l": 1.2}, solver={"max_seconds": 1e-9}, **ACROSS).to_dict()
     assert said["status"] == "time limit"
-    assert said["message"].startswith("time was up before an extremal was found")
+    assert said["message"].startswith("the time limit was reached before an extremal was found")
 
 
 def test_other_methods_refuse_path_constraints_and_this_one_what_has_none():

@@ -206,7 +206,7 @@ def test_the_answer_does_not_depend_on_the_units():
 def test_too_little_time_is_a_time_limit_with_advice():
     solution = solve(shipped("soft-return", max_seconds=1e-9))
     assert solution.status is Status.TIME_LIMIT
-    assert solution.message == "time was up after 0 iterations"
+    assert solution.message == "time limit reached after 0 iterations"
     assert "max_seconds" in solution.status.advice
     assert np.isfinite(solution.objective)
 

@@ -268,7 +268,7 @@ def test_trajectories_go_into_files_of_a_size_and_none_is_begun_without_room(
     assert [path.name for path in files] == [f"trajectories-00{k}.npz" for k in range(4)]
     assert sorted(k for path in files for k in _rows(path)) == list(range(24))
     monkeypatch.setattr(reports.shutil, "disk_usage", lambda _: SimpleNamespace(free=10**6))
-    with pytest.raises(BadInput, match=r"trajectories of 24 rows need .* GB"):
+    with pytest.raises(BadInput, match=r"trajectories of 24 cases need .* GB"):
         reports.carry_out(study, tmp_path / "b", Here, 1)
     assert not (tmp_path / "b").exists()
     listing = {"command": "study", "files": {"table.csv": {"bytes": 2**40, "sha256": "0"}}}

@@ -102,7 +102,7 @@ def test_a_vector_beside_a_box_of_a_control_u_has_a_norm_of_its_own():
 
 
 def test_points_on_the_way_are_refused_with_the_reason_beside_what_switches():
-    with pytest.raises(DerivationError, match="interior: points on the way are derived where H is quadratic"):
+    with pytest.raises(DerivationError, match="interior: waypoints are derived where H is quadratic"):
         derive(stated(interior={"gate": (x - 1,)}))
 
 

@@ -18,7 +18,7 @@ Examples:
   satsym certify answer                     examines it again, here or on another machine
 
 Exit codes: 0 the result holds, 3 the folder cannot be used, 4 it holds no answer,
-5 a condition of optimality is violated, or a number in result.json does not agree with the other files."""
+5 an optimality condition is violated, or a number in result.json does not agree with the other files."""
 
 
 @command(epilog=EXAMPLES)
@@ -43,7 +43,7 @@ def certify(folder: Path, as_json: bool) -> ExitCode:
         found = examine(instance, folder)
     solution, certificate = found.solution, found.certificate
     if not solution.status.answered:
-        complain(say("<folder>: holds no answer to examine", folder=str(folder)))
+        complain(say("<folder>: contains no solution to examine", folder=str(folder)))
         return ExitCode.NO_ANSWER
     spec = instance.model.spec
     result = head("certify", spec, instance, solution.status) | {

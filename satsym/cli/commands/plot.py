@@ -58,7 +58,7 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
     if (study := study_folder(subject, source)) is not None:
         said, drawn = draw(study, look, out)
         shown = said | {"command": "plot", "pictures": [str(path) for path in drawn]}
-        about = say("<name>: study of <number> rows", name=said["instance"], number=said["rows"])
+        about = say("<name>: study of <number> cases", name=said["instance"], number=said["rows"])
         answer(as_json, shown, lambda: with_files(about, drawn))
         return ExitCode.DONE
     if source is None and (named := named_in(Path(subject))):

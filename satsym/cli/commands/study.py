@@ -32,7 +32,8 @@ KEY is initial.STATE, final.STATE, parameters.NAME, time.tf, time.t0, time.tf_gu
 control.NAME.lower or control.NAME.upper. The same can be stated in the table [study] of an instance: command, sample,
 method, seed, and [study.vary] "initial.r" = "0.9:1.1:50".
 
-Exit codes: 0 done (failed rows are marked in the table), 3 the study cannot be carried out, 4 no row has a solution."""
+Exit codes: 0 done (failed cases are marked in the table), 3 the study cannot be carried out,
+4 no case has a solution."""
 
 
 def _listed(choices: type[Choice]) -> str:
@@ -48,17 +49,19 @@ def _listed(choices: type[Choice]) -> str:
     metavar="KEY=LOW:HIGH:N",
     help="A grid of N evenly spaced values; with KEY=log:LOW:HIGH:N, logarithmically spaced.",
 )
-@click.option("--sample", type=int, metavar="N", help="Draw a random sample of N rows instead of a grid.")
+@click.option("--sample", type=int, metavar="N", help="Draw a random sample of N cases instead of a grid.")
 @click.option("--normal", multiple=True, metavar="KEY=MEAN,SD", help="Draw from a normal distribution.")
 @click.option("--uniform", multiple=True, metavar="KEY=LOW,HIGH", help="Draw from a uniform distribution.")
 @click.option("--method", metavar="METHOD", help=f"Sampling method: {_listed(Sampling)}; by default sobol.")
 @click.option("--seed", type=int, metavar="S", help="Seed of the sampling; 0 by default.")
-@click.option("--command", metavar="COMMAND", help=f"What to do with each row: {_listed(Command)}; by default solve.")
+@click.option(
+    "--command", metavar="COMMAND", help=f"Command to run for each case: {_listed(Command)}; by default solve."
+)
 @click.option(
     "--certificate",
     metavar="KIND",
-    help=f"How to certify solutions: {_listed(Checked)}. By default local, which computes no competing solutions; "
-    "full is the certificate of `satsym solve`, and sample is that for one row in a hundred.",
+    help=f"How solutions are certified: {_listed(Checked)}. By default local, which computes no competing solutions; "
+    "full is the certificate of `satsym solve`; sample is full for one case in a hundred and local for the others.",
 )
 @set_option
 @click.option("--feedback", metavar="LAW", help="Control law for simulate; see `satsym simulate`.")
@@ -93,8 +96,8 @@ def study(
     """Solve, simulate or regulate many variants of an instance.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The table has one row for each
-    combination of values, with the results or the reason why there are none. An interrupted study is continued with
-    --resume; nothing is computed twice.
+    case, that is, for each combination of values; it contains the results or the reason why there are none. An
+    interrupted study is continued with --resume; nothing is computed twice.
     """
     from satsym import instance
     from satsym.report.results.study_table import path_of

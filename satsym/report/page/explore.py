@@ -36,7 +36,7 @@ WORDS = {
     "moving": "target",
     "burns": "burn",
     "target": "final condition",
-    "passed": "point on the way",
+    "passed": "waypoint",
     "inadmissible": "inadmissible",
     "origin": "origin",
     "body_called": "body",

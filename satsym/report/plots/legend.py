@@ -55,7 +55,7 @@ def _marked(quantities: Iterable[Series], colour: str) -> list[tuple[str, str]]:
     """Return entries for horizontal lines, which have the colours of their curves."""
     meant = {q.said for q in quantities if q.switching}
     return [
-        *([(style.STATE, say("point on the way"))] if PASSED in meant else []),
+        *([(style.STATE, say("waypoint"))] if PASSED in meant else []),
         *([(colour, say("switching time"))] if SWITCHED in meant else []),
     ]
 

@@ -108,7 +108,7 @@ def entries(planes: list[Plane]) -> list[legend.Entry]:
     if any(plane.forbidden for plane in planes):
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if any(plane.passed[0] for plane in planes):
-        found.append((legend.line(**style.PASSED), say("point on the way")))
+        found.append((legend.line(**style.PASSED), say("waypoint")))
     return found
 
 

@@ -31,7 +31,7 @@ STEADY = 1e-6
 STEP = 1e-30
 """Relative size of complex steps."""
 
-SWITCHED, PASSED = "switching at <times>", "points passed at <times>"
+SWITCHED, PASSED = "switching at <times>", "waypoints passed at <times>"
 """English descriptions of the marked times of a quantity."""
 
 

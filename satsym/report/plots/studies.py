@@ -192,7 +192,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
     shown = _without_outliers(finite)
     place.hist(shown, bins=min(60, max(5, int(np.sqrt(len(shown))))), color=style.BLUE)
     place.set_xlabel(on_axis(name))
-    place.set_ylabel(say("rows"))
+    place.set_ylabel(say("cases"))
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
         said = numbers_said(display.number(float(one), 4) for one in (low, middle, high))
@@ -202,10 +202,10 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
             low, high = (decimal(display.number(float(one), 4)) for one in (beyond[0], beyond[-1]))
             counts = {"count": len(finite) - len(shown), "rows": len(finite)}
             said = (
-                say("not shown: <count> of <rows> rows, far from the others, at <value>", **counts, value=low)
+                say("not shown: <count> of <rows> cases, far from the others, at <value>", **counts, value=low)
                 if low == high
                 else say(
-                    "not shown: <count> of <rows> rows, far from the others, from <low> to <high>",
+                    "not shown: <count> of <rows> cases, far from the others, from <low> to <high>",
                     **counts,
                     low=low,
                     high=high,

@@ -172,7 +172,7 @@ def entries(around: Surroundings) -> list[legend.Entry]:
     if around.other_start is not None:
         found.append((legend.line(**style.OTHER), say("target at the start")))
     if around.passed is not None:
-        found.append((legend.line(**style.PASSED), say("point on the way")))
+        found.append((legend.line(**style.PASSED), say("waypoint")))
     if around.forbidden:
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if around.radius:

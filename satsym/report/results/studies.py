@@ -211,7 +211,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     found = study_table.columns(path, chosen)
     status, branch = found.pop(Column.STATUS), found.pop(Column.BRANCH, None)
     columns = {labels[name]: values for name, values in found.items()}
-    rows = counted(said["rows"], "row")
+    rows = counted(said["rows"], "case")
     title = say("<name>: <each> for <rows>", name=said["instance"], each=said["each"], rows=rows)
     given = {labels[name]: columns.pop(labels[name]) for name in varied}
     return Numbers(

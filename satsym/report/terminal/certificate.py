@@ -11,7 +11,7 @@ from satsym.spec import ProblemSpec
 from satsym.status import Scope, Verdict
 
 _HOLDS = {
-    "boundary residual": "conditions at both ends met",
+    "boundary residual": "boundary conditions satisfied",
     "dynamics defect": "equations of motion satisfied",
     "node defect": "equations of motion satisfied between nodes",
     "junction defect": "arcs joined without gaps",
@@ -22,7 +22,9 @@ _HOLDS = {
     "generalised legendre-clebsch": "generalised Legendre-Clebsch condition holds",
     "switching times": "switching times confirmed by integration",
     "stated times of events": "events occur at the stated times",
-    "stated switching times, to the spacing of the nodes": "controls switch between the nodes next to the stated times",
+    "stated switching times, to the spacing of the nodes": (
+        "controls switch between the nodes adjacent to the stated times"
+    ),
     "stated times of saturation": "controls meet their bounds at the stated times",
     "the two minimisers of H at a jump are still equally good after it": (
         "the two minimisers of H are equally good only at the jump itself"
@@ -30,7 +32,7 @@ _HOLDS = {
     "coinciding switching times": "switching times distinct",
     "conjugate points: none": "no conjugate points",
     "correction of the nodes": "nodes lie on the recomputed trajectory",
-    "cost interval too narrow": "cost interval wide enough",
+    "cost interval too narrow": "cost interval covers the duality gap",
     "domain violation": "states inside the domain of the model",
     "gaps where the integration restarts": "trajectory continuous where integration restarts",
     "jump of the costates that is not along the constraint's gradient": (
@@ -38,10 +40,10 @@ _HOLDS = {
     ),
     "jump of the costates": "costates jump along the gradient of the constraint",
     "kernels contradict each other": "generated kernels agree",
-    "a limit at the end is violated": "limits at the end satisfied",
-    "the multiplier of a limit at the end vanishes": "multipliers of the limits at the end not zero",
+    "a terminal limit is violated": "terminal limits satisfied",
+    "the multiplier of a terminal limit vanishes": "multipliers of terminal limits not zero",
     "a multiplier vanishes on a boundary arc": "multipliers positive along boundary arcs",
-    "negative multiplier of a limit at the end": "multipliers of the limits at the end not negative",
+    "negative multiplier of a terminal limit": "multipliers of terminal limits not negative",
     "negative multiplier": "multipliers of path constraints not negative",
     "multiplier on a boundary is negative": "multipliers of path constraints not negative",
     "multiplier at a junction is negative": "multipliers at junctions not negative",
@@ -50,19 +52,19 @@ _HOLDS = {
         "problem convex, so singular arcs are optimal"
     ),
     "not convex": "problem convex, so there is no other minimum",
-    "deviation from tangency at junctions": "tangency conditions at junctions met",
+    "deviation from tangency at junctions": "tangency conditions at junctions satisfied",
     "distance from the boundary on a boundary arc": "boundary arcs lie on the boundary",
     "off the boundary on its arcs": "boundary arcs lie on the boundary",
     "path constraint violated": "path constraints satisfied",
-    "distance of the motion from the points that it must pass": "points on the way passed",
-    "derivative of the cost with respect to the times of the points on the way": (
-        "cost stationary with respect to the times of the points on the way"
+    "distance of the motion from its waypoints": "waypoints passed",
+    "derivative of the cost with respect to the times at the waypoints": (
+        "cost stationary with respect to the times at the waypoints"
     ),
     "second variation in arc lengths and directions": "second variation positive in lengths and directions of arcs",
     "second variation in the switching times": "second variation positive in the switching times",
     "second variation with fixed active arcs": "second variation positive with fixed active arcs",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
-    "second-order condition at the free start": "second-order condition at the free start holds",
+    "second-order condition at the free initial point": "second-order condition at the free initial point holds",
     "strict bang-bang condition": "strict bang-bang condition holds",
     "switching function on singular arcs": "switching function zero on singular arcs",
     "switching function vanishes on an arc": "switching functions zero at switching times only",
@@ -72,30 +74,30 @@ _HOLDS = {
 
 _FAILS = {
     "another minimiser of H remains equally good": "another minimiser of H remains equally good",
-    "boundary residual": "conditions at both ends not met",
+    "boundary residual": "boundary conditions not satisfied",
     "no comparison: no competitor was solved": "no competing solution was found",
     "cost": "cost not confirmed by integration",
     "correction of the nodes": "nodes do not lie on the recomputed trajectory",
-    "derivative of the cost with respect to the times of the points on the way": (
-        "cost not stationary in the times of the points on the way"
+    "derivative of the cost with respect to the times at the waypoints": (
+        "cost not stationary in the times at the waypoints"
     ),
     "dynamics defect": "equations of motion not satisfied",
     "gaps where the integration restarts": "trajectory not continuous where integration restarts",
     "hamiltonian drift": "Hamiltonian not constant",
     "junction defect": "arcs joined with gaps",
     "kernels contradict each other": "generated kernels do not agree",
-    "a limit at the end is violated": "limits at the end violated",
+    "a terminal limit is violated": "terminal limits violated",
     "the two minimisers of H at a jump are still equally good after it": (
         "the minimisers of H on both sides of a jump are equally good"
     ),
-    "the multiplier of a limit at the end vanishes": "a multiplier of the limits at the end is zero",
-    "negative multiplier of a limit at the end": "a multiplier of the limits at the end is negative",
+    "the multiplier of a terminal limit vanishes": "a multiplier of a terminal limit is zero",
+    "negative multiplier of a terminal limit": "a multiplier of a terminal limit is negative",
     "no proof of a minimum along singular arcs: the problem is not convex": "minimum along singular arcs not proved",
     "node defect": "equations of motion not satisfied between nodes",
     "not strict: the same arcs at a later time have the same cost": (
         "minimum not strict: the same arcs at a later time have the same cost"
     ),
-    "deviation from tangency at junctions": "tangency conditions at junctions not met",
+    "deviation from tangency at junctions": "tangency conditions at junctions not satisfied",
     "stationarity": "control does not minimise the Hamiltonian",
     "switching function vanishes on an arc": "switching function zero within an arc",
     "width of the cost interval": "cost interval too wide",
@@ -103,16 +105,18 @@ _FAILS = {
 """What is wrong where a check fails, by check; the names of all others say it."""
 
 _NAMED = {
-    re.compile(r"cheaper by: (.*)"): "nothing cheaper: <said_kind>",
-    re.compile(r"transversality at the start: (.*)"): "transversality condition at the start holds: <said_kind>",
+    re.compile(r"cheaper by: (.*)"): "no cheaper competitor: <said_kind>",
+    re.compile(r"transversality at the initial time: (.*)"): (
+        "transversality condition at the initial time holds: <said_kind>"
+    ),
 }
 """Checks whose names contain a name, with what is true where they pass."""
 
 _MEANINGS = {
     Verdict.CERTIFIED: "strict local minimum",
     Verdict.LOCAL_MINIMUM: "strict local minimum; no competing solutions were computed",
-    Verdict.EXTREMAL_ONLY: "first-order conditions hold; not shown to be a strict local minimum",
-    Verdict.FAILED: "a condition of optimality is violated",
+    Verdict.EXTREMAL_ONLY: "first-order conditions hold; not proved to be a strict local minimum",
+    Verdict.FAILED: "an optimality condition is violated",
 }
 """The claim of each verdict, in the words that solve, study and compare share."""
 

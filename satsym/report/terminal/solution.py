@@ -278,7 +278,7 @@ def _events(solution: Solution, unit: str) -> list[str]:
     """State entries and exits of path constraints, points on the way, and changes of the minimiser of H."""
     jumping = any(one.kind == "jump" for one in solution.events)
     head = say("minimiser of H") if jumping else say("path constraint")
-    head = say("point on the way") if spec_of(solution.instance).interior else head
+    head = say("waypoint") if spec_of(solution.instance).interior else head
     rows = [
         (message(one.kind), one.name, say("at <times>", times=f"{figure(one.t, 10)} {unit}".rstrip()))
         for one in solution.events
@@ -320,9 +320,12 @@ def examination_text(found: Examination, colour: bool) -> str:
     title = instance.title or spec.title
     return joined(
         [
-            [f"\x1b[1m{title}\x1b[0m" if colour else title, f"{heading}: {say('stated as <verdict>', verdict=stated)}"],
+            [
+                f"\x1b[1m{title}\x1b[0m" if colour else title,
+                f"{heading}: {say('recorded as <verdict>', verdict=stated)}",
+            ],
             wrapped(agreement),
-            table([each("key", "stated", "found"), *rows]) if rows else [],
+            table([each("key", "recorded", "recomputed"), *rows]) if rows else [],
             certificate_lines(found.certificate, spec) if found.certificate else [],
         ]
     )

@@ -15,7 +15,7 @@ from satsym.studies.running import Advance
 
 def progress_line(advance: Advance) -> str:
     """Return progress, speed, time left, and failures of a study."""
-    parts = [say("<done> of <rows>", done=advance.done, rows=counted(advance.total, "row"))]
+    parts = [say("<done> of <rows>", done=advance.done, rows=counted(advance.total, "case"))]
     if advance.rate > 0.0:
         parts.append(f"{advance.rate:.3g}/s")
         parts.append(say("<time> left", time=_time(advance.left)))
@@ -34,7 +34,7 @@ def study_text(found: Mapping[str, Any]) -> str:
             name=found["instance"],
             model=found["model"],
             each=found["each"],
-            rows=counted(found["rows"], "row"),
+            rows=counted(found["rows"], "case"),
             varied=", ".join(found["varied"]),
         ),
         "",
@@ -43,19 +43,19 @@ def study_text(found: Mapping[str, Any]) -> str:
     if found["verdicts"]:
         lines += [
             "",
-            *table([each("certificate", "rows", "meaning"), *map(_verdict, found["verdicts"].items())], right=(1,)),
+            *table([each("certificate", "cases", "meaning"), *map(_verdict, found["verdicts"].items())], right=(1,)),
         ]
     if found.get("branches") and found["branches"]["borders"] + found["branches"]["changed"]:
         lines += ["", _branches(found["branches"])]
     if found["worst"]:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
-        lines += ["", say("rows with the worst objective:")]
-        lines += table([each("row", "objective", "command"), *rows], right=(0, 1))
+        lines += ["", say("cases with the worst objective:")]
+        lines += table([each("case", "objective", "command"), *rows], right=(0, 1))
     if found["failures"]:
         rows = [(str(one["row"]), message(one["status"]), one["reproduce"]) for one in found["failures"]]
         heading = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
-        lines += ["", say(heading, rows=counted(failed, "row"))]
-        lines += table([each("row", "status", "command"), *rows], right=(0,))
+        lines += ["", say(heading, rows=counted(failed, "case"))]
+        lines += table([each("case", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
 
 
@@ -68,11 +68,11 @@ def _verdict(counted_verdict: tuple[str, int]) -> tuple[str, str, str]:
 def _branches(found: Mapping[str, int]) -> str:
     """State the outcome of comparing neighbouring rows."""
     return say(
-        "<branches> of solutions (column branch) were found, and <pairs> of neighbouring rows were compared; "
+        "<branches> of solutions (column branch) were found, and <pairs> of neighbouring cases were compared; "
         "<rows> changed to a branch with a lower cost",
         branches=counted(found["count"], "branch", "branches"),
         pairs=counted(found["borders"], "pair"),
-        rows=counted(found["changed"], "row"),
+        rows=counted(found["changed"], "case"),
     )
 
 

@@ -101,10 +101,10 @@ def with_limits(certificate: Certificate, solution: Solution) -> Certificate:
     pressing = min(pushes(solution).values(), default=np.inf)
     over = max([0.0, *beyond(solution.instance, solution.times, solution.x).values()])
     first = [
-        Check("a limit at the end is violated", over, BEYOND_LIMIT),
-        Check("negative multiplier of a limit at the end", max(0.0, -pressing), SIGN),
+        Check("a terminal limit is violated", over, BEYOND_LIMIT),
+        Check("negative multiplier of a terminal limit", max(0.0, -pressing), SIGN),
     ]
-    second = [Check("the multiplier of a limit at the end vanishes", float(not pressing > STRICT), 0.0)]
+    second = [Check("the multiplier of a terminal limit vanishes", float(not pressing > STRICT), 0.0)]
     checks, verdict = (*certificate.checks, *first), certificate.verdict
     if not all(c.passed for c in first):
         return replace(certificate, verdict=Verdict.FAILED, checks=checks)

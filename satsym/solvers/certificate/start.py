@@ -137,8 +137,8 @@ class Curvature:
     def checks(self) -> list[Check]:
         """Each is a deficit that must not be positive."""
         if not np.isfinite(self.smallest):
-            return [Check("second-order condition at the free start not resolved", 1.0, 0.0)]
-        found = [Check("second-order condition at the free start", float(not self.smallest > -FLAT), 0.0)]
+            return [Check("second-order condition at the free initial point not resolved", 1.0, 0.0)]
+        found = [Check("second-order condition at the free initial point", float(not self.smallest > -FLAT), 0.0)]
         return [*found, Check(NOT_STRICT, 1.0, 0.0)] if abs(self.smallest) <= FLAT else found
 
 
@@ -162,7 +162,7 @@ def with_start(certificate: Certificate, solution: Solution, sufficient: Sequenc
         What was found of solutions beside it, where the necessary conditions hold.
     """
     first = [
-        Check(f"transversality at the start: {unknown.name}", slope(solution, unknown).relative, STATIONARY)
+        Check(f"transversality at the initial time: {unknown.name}", slope(solution, unknown).relative, STATIONARY)
         for unknown in solution.instance.free
     ]
     if not all(c.passed for c in first):

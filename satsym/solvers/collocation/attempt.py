@@ -19,7 +19,7 @@ class Reason(Enum):
     OUTGROWN = "the solution needs more mesh intervals than are allowed"
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"
-    TIME_UP = "time was up"
+    TIME_UP = "time limit reached"
     NO_DESCENT = "no descent"
     NO_CONVERGENCE = "no convergence in {} steps"
     OUT_OF_DOMAIN = "the minimum lies outside the domain of the model"

@@ -63,7 +63,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
         Whether other starts are left: then only an end that is missed by far counts as out of reach.
     """
     if limits.late:
-        return Status.TIME_LIMIT, "time was up before an extremal was found"
+        return Status.TIME_LIMIT, "the time limit was reached before an extremal was found"
     message, limits = NOT_FOUND, replace(limits, meter=Meter())
     if instance.tf is None:
         message += f"; give {'a' if instance.tf_guess is None else 'another'} tf_guess"

@@ -210,7 +210,7 @@ def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.CONVERGED:
         return f"a second run with fewer steps agrees to {error:.0e}"
     if status is Status.TIME_LIMIT:
-        return f"time was up: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
+        return f"time limit reached: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
     if status is Status.NOT_CONVERGED:
         return f"even {steps} steps leave an estimated error of {error:.0e}: the motion passes close to a singularity"
     return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice

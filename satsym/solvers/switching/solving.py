@@ -340,7 +340,7 @@ def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exac
         if exact := attempt(instance, one, limits):
             return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
     if limits.expired:
-        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
+        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time limit reached: {last_seen.message}")
     return last_seen
 
 

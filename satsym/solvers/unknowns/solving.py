@@ -91,7 +91,7 @@ def solve(instance: Instance, progress: Progress | None, solver: Solver, certifi
     try:
         found = _solved(trials, certified)
     except Late:
-        found = _unanswered(trials, Status.TIME_LIMIT, f"time was up after {trials.count}")
+        found = _unanswered(trials, Status.TIME_LIMIT, f"time limit reached after {trials.count}")
     found = replace(
         found, instance=replace(found.instance, free=instance.free, guess=instance.guess, solver=instance.solver)
     )

@@ -27,12 +27,12 @@ def passing(solution: Solution, again: Replay) -> list[Check]:
     if not which:
         return []
     if len(found) != len(which):
-        return [Check("points on the way that are not passed", float(len(which) - len(found)), 0.0)]
+        return [Check("waypoints that are not passed", float(len(which) - len(found)), 0.0)]
     met = [_met(solution, again, k, own) for k, own in zip(found, which, strict=True)]
     return [
-        Check("distance of the motion from the points that it must pass", max(off for off, _ in met), MISSED),
+        Check("distance of the motion from its waypoints", max(off for off, _ in met), MISSED),
         Check(
-            "derivative of the cost with respect to the times of the points on the way",
+            "derivative of the cost with respect to the times at the waypoints",
             max(slope for _, slope in met),
             STATIONARY,
         ),
