@@ -156,7 +156,7 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     if not refined.solved:
         message = refined.message
         if refined.error < ROUNDING:
-            message += ", which rounding leaves: raise [solver] tolerance"
+            message += ", which is due to rounding; raise [solver] tolerance"
         return replace(unfinished(problem, refined.curve, message, steps, limits), obeys=True)
     message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
     return Extremal(problem, refined.curve, refined.cost * problem.scale.cost, Status.CONVERGED, message, steps)

@@ -56,7 +56,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.control_sets and problem.control_set != "free":
         raise DerivationError(
-            f"{problem.name}: control_set: control_sets already states each control set; leave it out",
+            f"{problem.name}: control_set: control_sets already defines each control set; leave it out",
             ("control_set",),
         )
     if problem and not isinstance(problem.maximise, bool):
@@ -65,7 +65,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
         raise DerivationError(
-            f"{problem.name}: no objective; state a running_cost (1 for minimum time) or a terminal_cost"
+            f"{problem.name}: no objective; give a running_cost (1 for minimum time) or a terminal_cost"
         )
     if problem:
         _refuse_inequalities(problem)
@@ -101,7 +101,7 @@ def _refuse_constraints(problem: Problem) -> None:
     if any(part.kind in ("ball", "annulus") for part in parts):
         message = (
             "beside bounds of the controls other than those of a box, or an angle, they are not derived; "
-            "leave out the control set, or state no constraints"
+            "leave out the control set or the constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
 
@@ -176,8 +176,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
             refuse(f"the interior point {name}", conditions, motion, "interior")
             if idle := [e for e in conditions if sp.sympify(e).free_symbols <= fixed]:
                 message = (
-                    f"{name} requires {idle[0]} = 0, but this condition does not depend on the motion; state a "
-                    "condition on the states or on time"
+                    f"{name} requires {idle[0]} = 0, but this condition does not depend on the motion; give a "
+                    f"condition on the states or on time"
                 )
                 raise DerivationError(f"{derivation.name}: interior: {message}", ("interior",))
 

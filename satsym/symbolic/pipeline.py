@@ -198,7 +198,8 @@ def _moving(
     if not steps:
         kinds = " or ".join(sorted(kind.__name__ for kind in _kinds(Model) if which in vars(kind)))
         raise DerivationError(
-            f"a model of the kind {type(model).__name__} has no derivation steps of its own; state the model as {kinds}"
+            f"a model of the kind {type(model).__name__} has no derivation steps of its own; declare the model as "
+            f"{kinds}"
         )
     refuse_misfits(model, problem)
     derivation = begin(model, problem)
@@ -220,7 +221,7 @@ def _refuse_unsolved(name: str, motion: Derivation) -> None:
     if unsolved:
         raise DerivationError(
             f"{name}: the rates of {', '.join(unsolved)} have no closed form that is short enough to "
-            "differentiate; linearise the bodies first, with AboutRest(of=...), or state fewer bodies"
+            "differentiate; linearise the bodies first, with AboutRest(of=...), or declare fewer bodies"
         )
 
 

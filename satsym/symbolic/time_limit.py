@@ -57,7 +57,7 @@ def within(seconds: float | None, subject: str) -> Iterator[None]:
             yield
     except _TimeUp:
         model, step = _at[0]
-        advice = "state it more simply, name parts as definitions, or give it more time with --max-seconds"
+        advice = "write it more simply, name parts as definitions, or give it more time with --max-seconds"
         raise DerivationError(f"{model}: the derivation exceeded {seconds:g} s in the step {step}; {advice}") from None
     finally:
         _deadlines.clear()

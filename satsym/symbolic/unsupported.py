@@ -81,4 +81,4 @@ def _unknown(found: sp.Basic, moving: Collection[str]) -> str:
         )
     if found.args == (t,):
         return f"contains {found}; write {name}, the symbol of the state or control, without the argument time"
-    return f"contains {found}, a value at another time; delays are not supported: state the motion without delays"
+    return f"contains {found}, a value at another time; delays are not supported: write the motion without delays"

@@ -136,7 +136,7 @@ def test_an_angle_may_be_measured_from_anywhere():
         (steered(sympify(1), PUSHED, control_sets={"a": Angle("beta"), "b": Ball("beta")}), "'beta' is in several"),
         (
             steered(sympify(1), PUSHED, control_set="box"),
-            "control_set: control_sets already states each control set; leave it out",
+            "control_set: control_sets already defines each control set; leave it out",
         ),
         (steered(sympify(1), {**PUSHED, vx: a, vy: a}), "beta enters neither the motion nor the cost"),
     ],

@@ -174,10 +174,10 @@ def test_what_switches_needs_bounds():
 @pytest.mark.parametrize(
     ("sets", "said"),
     [
-        ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which has no bounds; state a Box or a Ball"),
+        ({"push": Box("k"), "rate": Free("w")}, "H is linear in w, which has no bounds; use a Box or a Ball"),
         (
             {"push": Box("k"), "rate": Ball("w")},
-            "H is linear in the single control w, so there is no direction to choose; state a Box",
+            "H is linear in the single control w, so there is no direction to choose; use a Box",
         ),
     ],
 )

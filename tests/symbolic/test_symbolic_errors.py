@@ -316,7 +316,7 @@ def test_hamiltonians_that_are_convex_in_each_control_have_a_law(cost: sp.Expr) 
 
 @pytest.mark.parametrize("cost", [u1**2, (u1 * sin(q1)) ** 2 + (u1 * cos(q1)) ** 2], ids=str)
 def test_a_control_that_is_linear_beside_others_is_refused_where_nothing_limits_it(cost: sp.Expr) -> None:
-    said = "task: H is linear in u2, which has no bounds; state a Box or a Ball"
+    said = "task: H is linear in u2, which has no bounds; use a Box or a Ball"
     assert complaint(problem(running_cost=cost)) == said
 
 
@@ -351,7 +351,7 @@ def test_a_weight_has_to_be_declared_positive() -> None:
 def test_a_box_needs_uncoupled_controls() -> None:
     coupled = EFFORT + u1 * u2 / 4
     assert complaint(problem(running_cost=coupled, control_set="box")) == (
-        "task: a box requires a diagonal H_uu, because only then does clipping each control minimise H"
+        "task: in a box, H_uu must be diagonal, because only then does clipping each control minimise H"
     )
     assert derive(problem(running_cost=coupled)).steps
 
@@ -359,8 +359,8 @@ def test_a_box_needs_uncoupled_controls() -> None:
 def test_a_ball_needs_equal_weights() -> None:
     for cost in (u1**2 + 2 * u2**2, EFFORT + u1 * u2 / 4, k * u1**2 + u2**2):
         assert complaint(problem(running_cost=cost, control_set="ball")) == (
-            "task: a ball requires equal weights of the controls, because only then does shortening the "
-            "control vector minimise H"
+            "task: in a ball, the squares of all controls must have the same weight in the cost, because only then "
+            "does shortening the control vector minimise H"
         )
         assert derive(problem(running_cost=cost)).steps
 

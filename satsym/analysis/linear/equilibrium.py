@@ -123,7 +123,7 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
     if not (on_reference or spec.linear or all(_rests(model, p, unit, t, point) for t in times)):
         raise BadInput(
             f"{where}: the rates of the model vanish at ({', '.join(f'{v:.6g}' for v in point)}) only at t = "
-            f"{t0:.6g}, so this point is not an equilibrium; state a reference in the model, that is, an "
+            f"{t0:.6g}, so this point is not an equilibrium; declare a reference in the model, that is, an "
             "uncontrolled motion"
         )
     aside = [point + shift * (unit.states + np.abs(point)) for shift in SHIFTS]
@@ -205,8 +205,7 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
     if not ((left <= AT_REST * size).all() and model.in_domain(point)):
         raise BadInput(
             f"{where}: no equilibrium of {model.spec.name} was found from the start "
-            f"({', '.join(f'{v:.6g}' for v in start)}); start near an equilibrium, or state a reference in the "
-            "model"
+            f"({', '.join(f'{v:.6g}' for v in start)}); start near an equilibrium, or declare a reference in the model"
         )
     return point
 

@@ -220,7 +220,7 @@ class Subject:
         letters = [self.reading.letters[name] for name in inside if name in self.reading.letters]
         odd = self.meanings.unknown(letters, self.given)
         written = ", ".join(letter.latex if self.latex else letter.name for letter in odd)
-        why = f"{written} might have no meaning in {self.derived.record.name}; state the meaning with --let LETTER=NAME"
+        why = f"{written} might have no meaning in {self.derived.record.name}; give its meaning with --let LETTER=NAME"
         return self.answered(statement, "undecided", why)
 
     def _inside(self, statement: Node | Equality) -> list[str]:

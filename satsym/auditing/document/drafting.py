@@ -171,7 +171,7 @@ def _fill(entry: _Entry) -> None:
     names = {name: _called(tree, k) for k, (name, tree) in enumerate(derivatives.items(), start=1)}
     meant = subject.meant(named, derivatives, fit.guess)
     if isinstance(named, Equality) and named.rhs == Sym(CONSTANT):
-        raise BadInput("the statement that a quantity is constant is a claim; state it as a claim")
+        raise BadInput("the statement that a quantity is constant is a claim; write it as a claim")
     rate_of = subject.derived.kinematic.get(entry.answer.address)
     for name, tree in meant.items():
         letter = subject.reading.letters.get(name)
@@ -228,7 +228,9 @@ def _of_output(letter: Letter | None, guess: Guess, subject: Subject) -> str:
     elif name not in record.variables(derived.record, "output"):
         return ""
     if times > 1:
-        raise BadInput("the second derivative of an output is not supported; state by hand what to compare it with")
+        raise BadInput(
+            "the second derivative of an output is not supported; write by hand what to compare the formula with"
+        )
     return f"{'d(' * times}at('{address}'){')' * times}"
 
 

@@ -110,7 +110,7 @@ def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) ->
     a, b = numbers(whole.part("A")), numbers(whole.part("B"))
     weights = [whole.parts.get(name) if stated is None else numeric(stated) for name, stated in (("Q", Q), ("R", R))]
     if any(weight is None for weight in weights):
-        raise BadInput(f"{whole.name} states no weights; give both Q and R, as the document states them")
+        raise BadInput(f"{whole.name} has no weights; give both Q and R, as in the document")
     q, r = (np.asarray(weight, dtype=float) for weight in weights)
     return a, b, q, r
 

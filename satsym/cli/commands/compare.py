@@ -41,9 +41,9 @@ FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Compare several instances of one system side by side.
 
-    An instance that states a control law ([classical]) is simulated under it; any other is solved. The metrics are
-    durations, integrals, and peak and final values, each explained below the table. Results go into the folder of the
-    first X.
+    An instance that specifies a control law ([classical]) is simulated under that law; any other instance is solved.
+    The metrics are durations, integrals, and peak and final values, each explained below the table. Results go into
+    the folder of the first X.
     """
     from satsym import instance
     from satsym.analysis import comparison

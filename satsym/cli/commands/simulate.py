@@ -37,7 +37,7 @@ Examples:
     default=None,
     metavar="LAW",
     help=f"Control law: {', '.join(FEEDBACKS)}. "
-    "By default classical if the instance states such a law, otherwise none.",
+    "By default classical if the instance specifies such a law, otherwise none.",
 )
 @set_option
 @json_option

@@ -29,8 +29,8 @@ Examples:
   satsym study my_case.toml --out DIR --resume    continue an interrupted study
 
 KEY is initial.STATE, final.STATE, parameters.NAME, time.tf, time.t0, time.tf_guess, control.max_norm,
-control.NAME.lower or control.NAME.upper. The same can be stated in the table [study] of an instance: command, sample,
-method, seed, and [study.vary] "initial.r" = "0.9:1.1:50".
+control.NAME.lower or control.NAME.upper. A study can also be specified in the table [study] of an instance, with the
+keys command, sample, method, seed, and [study.vary] "initial.r" = "0.9:1.1:50".
 
 Exit codes: 0 done (failed cases are marked in the table), 3 the study cannot be carried out,
 4 no case has a solution."""

@@ -221,9 +221,7 @@ def _length_unit(instance: Instance) -> str:
     stated = spec.position[0].unit
     found = stated if stated != "1" else length_unit(v.unit for v in spec.states)
     if found == "1" or dict(units.dimension(found)) != {"[length]": 1}:
-        raise BadInput(
-            f"{instance.called}: the model {spec.name} states no unit of length; state the unit of its position"
-        )
+        raise BadInput(f"{instance.called}: the model {spec.name} has no unit of length; give the unit of its position")
     return found
 
 

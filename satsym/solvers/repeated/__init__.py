@@ -98,8 +98,8 @@ class Repeated:
         instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
-                f"{instance.called}: the controls of {instance.model.spec.name} switch, but switching is not "
-                "supported in repeated solving; solve each instance separately"
+                f"{instance.called}: the controls of {instance.model.spec.name} switch, which repeated solving does "
+                f"not support; solve each instance separately"
             )
         if instance.end_limits:
             name = next(iter(instance.end_limits))

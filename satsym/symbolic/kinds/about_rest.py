@@ -146,7 +146,7 @@ def _linear_rows(so_far: Derivation, model: AboutRest) -> list[tuple[str, sp.Exp
     assert original is not None
     rest = {s: sp.sympify(e) for s, e in of.reference.items()}
     if any(rest.get(q, 1) != 0 for q in of.coordinates):
-        raise DerivationError(f"{model.name}: {of.name} states no reference that is at rest with all coordinates zero")
+        raise DerivationError(f"{model.name}: {of.name} has no reference that is at rest with all coordinates zero")
     velocity = {q: model.velocities.get(q, sp.Symbol(f"{q.name}_rate", real=True)) for q in of.coordinates}
     chain = [*of.named.items(), *((e.lhs, e.rhs) for e in original.step("kane").equations if _is_part(e))]
     moving = [*of.coordinates, *of.speeds, *symbols_of(of.controls)]

@@ -85,7 +85,7 @@ class Gyrostat(Model):
             yield "the angles and their rates must be states"
         named = {*self.torques, *(body for motor in self.motors for body in (motor.drives, motor.against))}
         if not named <= set(self.bodies):
-            yield "torques and motors must act on the bodies that are stated"
+            yield "torques and motors must act on declared bodies"
         if set(self.drives) != set(symbols_of(self.controls)):
             yield "drives: every control must be defined, and nothing else"
 

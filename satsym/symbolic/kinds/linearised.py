@@ -92,7 +92,7 @@ class Linearised(Derived):
         if kept := [u.name for u in old_controls if u in controls and self.about.get(u, 0) != 0]:
             yield f"{', '.join(kept)} is not zero along the reference motion; give the deviation a name of its own"
         if set(self.deviations) != {*states, *new}:
-            yield "state exactly one deviation for each state and each new control"
+            yield "give exactly one deviation for each state and each new control"
         if self.definitions != of.definitions:
             yield f"the definitions must be exactly those of {of.name}"
 

@@ -193,8 +193,8 @@ def first_order(so_far: Derivation) -> Step:
     if foreign:
         odd = ", ".join(sorted(s.name for s in foreign))
         raise DerivationError(
-            f"{model.name}: the scaled motion still depends on {odd}; state a further dimensionless group or "
-            "another scale"
+            f"{model.name}: the scaled motion still depends on {odd}; declare a further dimensionless group, or "
+            f"choose another scale"
         )
     sources = ("original_equations", "scales", "original_states")
     checks = (check, Check("plain numbers alone", float(len(foreign)), 0.0))

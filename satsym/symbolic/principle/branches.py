@@ -102,14 +102,12 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
             if mixed := sorted(v.name for v in slope.free_symbols & (others | norms)):
                 raise DerivationError(
                     f"{name}: H has products of {u.name} and {', '.join(mixed)}, which belong to different "
-                    "control sets; this is not supported: state them as one set, such as the components of a "
-                    "vector"
+                    "control sets; this is not supported: declare them as one set, such as the components of a vector"
                 )
             if slope.has(sp.sign):
                 raise DerivationError(
-                    f"{name}: |{u.name}| is not supported together with control_sets; state control_set = "
-                    '"box" for all controls, or use two controls, one for each sign, both with the lower bound '
-                    "0"
+                    f'{name}: |{u.name}| is not supported together with control_sets; write control_set = "box" for '
+                    "all controls, or use two controls, one for each sign, both with the lower bound 0"
                 )
             if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
@@ -157,7 +155,7 @@ def _turned(
         raise DerivationError(
             f"{name}: H is linear in {u.name}, the magnitude of a vector whose direction is the angle "
             f'{angle.name}; this requires "{u.name}": Box("{u.name}") and no other vector with the direction '
-            f"{angle.name}; or state the components of this vector as controls in a Ball"
+            f"{angle.name}; or use the components of this vector as controls in a Ball"
         )
     cosine, sine = (tidy(sp.diff(e, u)) for e in pair)
     bounded = turned.kind == "box"
@@ -220,8 +218,7 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
             raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
         if len(slopes) == 1:
             raise DerivationError(
-                f"{name}: the norm of the single control {controls} is its magnitude; state a Box, and write "
-                f"|{controls}|"
+                f"{name}: the norm of the single control {controls} is its magnitude; use a Box, and write |{controls}|"
             )
         return Minimum(part, "throttled", tuple(slopes), weight=tidy(weight))
     try:
@@ -230,10 +227,10 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
         return _of_each(name, side * h, part, slopes)
     if all(entry == 0 for entry in rows):
         if part.kind == "free":
-            raise DerivationError(f"{name}: H is linear in {controls}, which has no bounds; state a Box or a Ball")
+            raise DerivationError(f"{name}: H is linear in {controls}, which has no bounds; use a Box or a Ball")
         if part.kind != "box" and len(slopes) == 1:
             raise DerivationError(
-                f"{name}: H is linear in the single control {controls}, so there is no direction to choose; state a Box"
+                f"{name}: H is linear in the single control {controls}, so there is no direction to choose; use a Box"
             )
         return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
     refuse_singular(name, part.kind, part.symbols, rows)
@@ -264,6 +261,6 @@ def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimu
             f"{name}: H is not quadratic in {controls} but has products of these controls, which is not supported"
         )
     if part.kind == "free" and any(by_circle(h, u) for u in part.symbols):
-        raise DerivationError(f"{name}: {controls} is an angle without bounds; state Angle({controls!r})")
+        raise DerivationError(f"{name}: {controls} is an angle without bounds; use Angle({controls!r})")
     laws = tuple(minimiser(name, h, u, ends_of(part, u)) for u in part.symbols)
     return Minimum(part, "stationary", gradient=tuple(slopes), laws=laws)

@@ -60,7 +60,7 @@ def project(
     if control_set == "box":
         if not hessian.is_diagonal():
             raise DerivationError(
-                "a box requires a diagonal H_uu, because only then does clipping each control minimise H"
+                "in a box, H_uu must be diagonal, because only then does clipping each control minimise H"
             )
         return [Clip(u, limits[i], limits[m + i]) for i, u in enumerate(unconstrained)]
     if control_set == "ball":
@@ -75,8 +75,8 @@ def refuse_unequal(hessian: sp.Matrix) -> None:
     m = hessian.rows
     if not all(vanishes(e) for e in hessian - hessian[0, 0] * sp.eye(m)):
         raise DerivationError(
-            "a ball requires equal weights of the controls, because only then does shortening the control vector "
-            "minimise H"
+            "in a ball, the squares of all controls must have the same weight in the cost, because only then does "
+            "shortening the control vector minimise H"
         )
 
 
@@ -93,7 +93,7 @@ def refuse_singular(name: str, kind: PartKind, controls: Sequence[sp.Symbol], he
     names = ", ".join(u.name for u in controls)
     linear = [u.name for k, u in enumerate(controls) if all(vanishes(entry) for entry in hessian.row(k))]
     if linear and kind == "free":
-        message = f"H is linear in {', '.join(linear)}, which has no bounds; state a Box or a Ball"
+        message = f"H is linear in {', '.join(linear)}, which has no bounds; use a Box or a Ball"
         raise DerivationError(f"{name}: {message}")
     if linear and kind in ("ball", "annulus"):
         refuse_unequal(hessian)

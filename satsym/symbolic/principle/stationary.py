@@ -249,6 +249,6 @@ def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
                 raise DerivationError(
                     f"{name}: H is convex in {u} in some places only, so H might have several local minima, "
                     "which are not compared; choose as the control a quantity in which H is a polynomial (a "
-                    "reaction rate instead of a temperature, for instance) and give both its bounds, or state "
-                    "a model in which H is convex in the control"
+                    "reaction rate instead of a temperature, for instance) and give both its bounds, or use a model "
+                    "in which H is convex in the control"
                 )

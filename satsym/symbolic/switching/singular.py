@@ -286,7 +286,7 @@ def refuse_mixtures(so_far: Derivation) -> None:
     if held:
         message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
         raise DerivationError(
-            f"{message}derived; state the constraint as a bound of that control", ("path_constraints",)
+            f"{message}derived; write the constraint as a bound on that control", ("path_constraints",)
         )
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):

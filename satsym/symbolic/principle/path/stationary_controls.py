@@ -33,7 +33,7 @@ def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
     for one in every:
         controls = ", ".join(u.name for u in one.part.symbols)
         if one.part.kind not in ("free", "box", "angle"):
-            message = f"bounds on the norm of {controls} are not supported beside them; state a box, or an angle"
+            message = f"bounds on the norm of {controls} are not supported together with them; use a box or an angle"
         elif one.branch in ("switched", "throttled"):
             message = f"H is linear in {controls}; they are derived where H has a strict minimum in all controls"
         elif any(law.has(Vertex, Argmin) for law in one.laws):
