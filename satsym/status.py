@@ -37,7 +37,7 @@ class Status(str, Enum):
 
 _ADVICE = {
     Status.CONVERGED: "",
-    Status.NOT_CONVERGED: "try more steps, another method, or a guess closer to the answer",
+    Status.NOT_CONVERGED: "try more steps, another method, or a guess closer to the solution",
     Status.INFEASIBLE: "allow more time, or widen the bounds of the control",
     Status.NO_MINIMISER: "",
     Status.LEFT_DOMAIN: "check the initial state, shorten the horizon, or widen the bounds of the control",

@@ -190,7 +190,7 @@ def _driving(instance: Instance, case: Case) -> Case:
     assert instance.driven is not None
     name, spec = instance.driven.control, case.instance.model.spec
     if not case.answered:
-        raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no answer: {case.message}")
+        raise BadInput(f"{instance.called}: [driven] by: {case.instance.name} has no solution: {case.message}")
     if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
         raise BadInput(
             f"{instance.called}: [driven] by: {case.instance.name} has no {name}; name instances that have this control"

@@ -36,7 +36,7 @@ Start here:
   satsym audit its_thesis                audit the derivation in a thesis
 
 \b
-Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,
+Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no solution,
 5 certificate fails, 6 generated files are stale, 1 anything unforeseen
 (SATSYM_DEBUG=1 shows where that was).
 

@@ -52,7 +52,9 @@ def end_time(instance: Instance, met: Sequence[str]) -> float | None:
         root = _root(instance, name)
         if root is None or (found is not None and abs(root - found) > TIME_TOLERANCE * max(abs(root), abs(found))):
             if found is None:
-                message = f"{instance.called}: terminal inequality {name}: no final time after the start satisfies it"
+                message = (
+                    f"{instance.called}: terminal inequality {name}: no final time after the initial time satisfies it"
+                )
                 raise BadInput(message)
             raise BadInput(
                 f"{instance.called}: terminal inequality {name}: the given final time {found:.6g} does not satisfy it"
@@ -82,7 +84,7 @@ def never(instance: Instance) -> str:
         times = instance.t0 + (last - instance.t0) * 10.0 ** np.random.default_rng(0).uniform(-1.0, 1.0, DRAWN)
         linear = all(inequalities_at(instance, t, x)[1][k, -1] == slopes[k, -1] for t in times)
         if linear and _root(instance, name) is None:
-            return f"terminal inequality {name}: no final time after the start satisfies it"
+            return f"terminal inequality {name}: no final time after the initial time satisfies it"
     return ""
 
 

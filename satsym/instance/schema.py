@@ -142,7 +142,7 @@ class SwitchingTable(_Table, frozen=True):
 
 
 class DrivenTable(_Table, frozen=True):
-    control: Annotated[Name, Key("a control that other instances supply", COMPARING)]
+    control: Annotated[Name, Key("a control that is taken from other instances", COMPARING)]
     by: Annotated[Names, Key("the instances that supply this control; one run for each instance", COMPARING)]
 
 
@@ -160,7 +160,7 @@ class GuessTable(_Table, frozen=True):
 
 class OrbitTable(_Table, frozen=True):
     epoch: Annotated[Epoch, Key("date and time at which the model's time is zero", EXPORTING)]
-    frame: Annotated[Name, Key("the axes: EME2000, ICRF or GCRF", EXPORTING)] = "EME2000"
+    frame: Annotated[Name, Key("the reference frame: EME2000, ICRF or GCRF", EXPORTING)] = "EME2000"
     centre: Annotated[Name, Key("the body at the origin, such as Earth; pictures show it", (*EXPORTING, "plot"))] = (
         "Earth"
     )
@@ -251,7 +251,12 @@ class InstanceFile(_Table, frozen=True):
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
-        Key("largest magnitudes; only compared with the result", MOVING, "the model's", "STATE or quantity"),
+        Key(
+            "largest allowed magnitudes; compared with the result, not enforced",
+            MOVING,
+            "the model's",
+            "STATE or quantity",
+        ),
     ] = {}
     switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
     driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None

@@ -119,7 +119,7 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
         parts += [f"{len(statement.active)} active constraints", f"{len(spec.multipliers)} constraints in all"]
         parts += [f"multiplier {v.str(6, radius=False)}" for v in end.nu]
     return Hypothesis(
-        "the conditions at the end hold, strictly where they are inequalities",
+        "the final conditions hold, strictly where they are inequalities",
         "by the equations of the extremal",
         "; ".join(parts),
     )
@@ -147,8 +147,8 @@ def of_field(found: Regularity) -> Hypothesis:
     if found.ratios:
         parts.append(f"smallest ratio of determinants {min(float(v.mid()) for v in found.ratios):.3g}")
     return Hypothesis(
-        "a field of extremals about this one is regular on the closed interval, and its quadratic form at the end is "
-        "positive",
+        "a field of extremals about this one is regular on the closed interval, and its quadratic form at the final "
+        "time is positive",
         f"W(t0) = {found.start}; no conjugate or focal point",
         "; ".join(parts),
     )

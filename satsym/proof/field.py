@@ -76,7 +76,10 @@ def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regul
             time += sum((step.h for step in segment.steps), arb(0))
     form = passed.end.second_variation(w)
     if form.nrows() and not positive(form):
-        raise NotProved("the second variation at the end could not be shown to be positive (a focal point of the end?)")
+        raise NotProved(
+            "the second variation at the final time could not be shown to be positive (a focal point of the final "
+            "conditions?)"
+        )
     return Regularity(called, pieces, tuple(ratios))
 
 

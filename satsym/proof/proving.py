@@ -136,7 +136,7 @@ class Located:
 
 def _proved(case: Instance, found: Solution, record: Proof) -> Proof:
     if not found.status.answered:
-        raise NotProved(f"there is no answer to start the proof from: {found.message}")
+        raise NotProved(f"there is no solution to start the proof from: {found.message}")
     statement = stated(case, found.instance.met, found.x[:, -1].tolist())
     record = replace(record, numbers=dict(statement.source.stated))
     if isinstance(statement.kernel, Lifted):
@@ -192,7 +192,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR_ANSWER:
-        raise NotProved("the answer is not an extremal: the nearest extremal has other costates")
+        raise NotProved("the solution is not an extremal: the nearest extremal has other costates")
     return shooting, place
 
 
@@ -282,7 +282,7 @@ def _located(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], d
         if not size < 1e6 or (before < SETTLED_CORRECTION and not fine and size > 0.5 * before):
             break
         fine = fine or size < SETTLED_CORRECTION
-    raise NotProved("Newton's method finds no extremal near the answer; the extremal might have another structure")
+    raise NotProved("Newton's method finds no extremal near the solution; the extremal might have another structure")
 
 
 def _equations(

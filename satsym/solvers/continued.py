@@ -72,7 +72,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
     began = time.perf_counter()
     first = certified(at(instance, 0.0), progress)
     if not first.status.answered:
-        reason = f"the first problem of the continuation, {_values(instance, 0.0)}, has no answer: {first.message}"
+        reason = f"the first problem of the continuation, {_values(instance, 0.0)}, has no solution: {first.message}"
         return _told(instance, first, reason, (), began)
     reached = _stepped(instance, _Reached(0.0, (first,)), progress, quick)
     if reached.share < 1.0:

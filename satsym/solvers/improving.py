@@ -117,7 +117,7 @@ def bottomless(solution: Solution) -> Solution | None:
     advice = "increase the weight of the control or of time, shorten the time, or bound the control"
     spec, within = solution.instance.model.spec, solution.instance.control_set
     if spec.control_set not in (None, "free") and not within.bounded:
-        advice += "; the model provides for bounds of the control, but [control] gives none"
+        advice += "; the model allows bounds on the control, but [control] gives none"
     return without_minimiser(solution, f"{endless}; {advice}")
 
 

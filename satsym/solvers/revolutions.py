@@ -154,4 +154,4 @@ def _turns(count: int) -> str:
 
 
 def _costing(value: float) -> str:
-    return f"costs {value:.6g}" if math.isfinite(value) else "has no answer"
+    return f"costs {value:.6g}" if math.isfinite(value) else "has no solution"

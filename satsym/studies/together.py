@@ -79,7 +79,7 @@ def _alone(single: Callable[[str, Instance], Row], cases: Cases, answered: Seque
         key, instance = cases[k]
         wider = next((message for other, message in beyond if _narrower(instance, other)), None)
         if wider is not None:
-            found[k] = rows.infeasible(key, f"the end is not reached even with wider bounds: {wider}")
+            found[k] = rows.infeasible(key, f"the final state is not reached even with wider bounds: {wider}")
             continue
         found[k] = rows.tried(single, key, instance)
         if found[k].status == Status.INFEASIBLE.value and not any(_narrower(one, instance) for one in answered):

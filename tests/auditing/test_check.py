@@ -98,7 +98,8 @@ def test_letters_are_guessed_said_and_corrected(run: Run) -> None:
     code, out, err = run(r"\ddot x - 2n\dot y - 3n^2x = 0", "--model", "hill")
     assert (code, err) == (0, "")
     assert out.splitlines() == [
-        "symbols taken as: x = xi, n = omega, y = eta, the uncontrolled motion (to correct one: --let LETTER=NAME)",
+        "symbols interpreted as: x = xi, n = omega, y = eta, the uncontrolled motion (to correct one: --let "
+        "LETTER=NAME)",
         "right: hill:first_order.xi_dot",
     ]
     code, out, _ = run(r"\ddot x - 2n\dot y - 3n^2x = 0", "--model", "hill", "--let", "n=sigma")

@@ -84,7 +84,7 @@ def test_a_page_and_a_remark_on_drafts_for_a_model_of_ones_own(own: Path, capsys
     path, page = own / "ledger.toml", own / "page.html"
     path.write_text(text([*ROWS[:2], {**ROWS[2], "draft": True}], HEAD))
     assert main(["audit", str(path), "--html", str(page)]) == 0
-    assert "1 this row is a draft and has not been confirmed" in capsys.readouterr().out
+    assert "1 ledger row is a draft that has not been confirmed" in capsys.readouterr().out
     assert 'id="sled:first_order.v"' in page.read_text()
 
 

@@ -110,11 +110,11 @@ def test_people_get_the_facts_and_what_they_mean(name: str, capsys: pytest.Captu
     assert "it distinguishes nothing" in words
     assert 'rule of the signs, "stable if all(e.real <= 0)": unstable' in words
     if name == "itb-earth-escape":
-        assert "called a hyperbola" in words
+        assert "classified as a hyperbola" in words
         assert "Floquet multipliers: no period" in words
         assert "turning" not in words
     else:
-        assert "called an ellipse: the eccentricity exceeds 1e-12" in words
+        assert "classified as an ellipse: the eccentricity exceeds 1e-12" in words
         assert "In Lyapunov's sense the orbit is therefore unstable" in words
         assert "orbitally stable" in words
         assert ("Hill's equations" in words) == (name == "itb-earth")

@@ -65,7 +65,7 @@ def test_without_an_answer_it_is_said(run: Run, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(speed, "solved", lambda _: failed)
     code, out, _ = run("bench", "return-to-orbit", "--quick")
     assert code == 4
-    assert "the instance has no answer: infeasible" in out
+    assert "the instance has no solution: infeasible" in out
     code, out, err = run("bench", "nothing-of-that-name")
     assert (code, out) == (3, "")
     assert err.count("\n") == 1

@@ -44,7 +44,7 @@ def test_exit_codes_tell_what_is_beyond_from_what_fails(run: Run, tmp_path: Path
     assert (code, json.loads(out)["status"]) == (4, "beyond this proof")
     code, out, _ = run("prove", "double-integrator-fuel", "--set", "time.tf=1.5", "--json")  # it takes 2 at least
     assert (code, json.loads(out)["status"]) == (5, "not proved")
-    assert "no answer" in json.loads(out)["reason"]
+    assert "no solution" in json.loads(out)["reason"]
     assert json.loads(out)["theorem"] is None
     assert run("prove", "nowhere.toml")[0] == 3
     assert run("prove", "double-integrator-time", "--digits", "3")[0] == 2

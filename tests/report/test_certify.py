@@ -155,7 +155,7 @@ def test_the_command_says_what_differs(folders: dict[str, Path], tmp_path: Path,
     assert "x_final.x" in out
 
 
-@pytest.mark.parametrize("kind", ["nothing", "a file", "truncated", "without problem", "no answer"])
+@pytest.mark.parametrize("kind", ["nothing", "a file", "truncated", "without problem", "no solution"])
 def test_what_cannot_be_examined_gets_one_line(
     kind: str, folders: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -398,7 +398,7 @@ def test_a_rule_claim_or_step_without_a_text_is_named() -> None:
 
 
 def test_a_language_without_texts_is_bad_input() -> None:
-    with pytest.raises(BadInput, match='there are no texts in the language "xx"; there are en, id'):
+    with pytest.raises(BadInput, match='there is no translation into the language "xx"; there are en, id'):
         render(derived("double_integrator"), language="xx")
 
 

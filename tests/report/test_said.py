@@ -209,12 +209,12 @@ def test_every_key_of_an_instance_file_is_explained_in_indonesian() -> None:
 
 
 def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> None:
-    assert say("end <value>", value=3) == "end 3"
+    assert say("final value <value>", value=3) == "final value 3"
     assert message("converged") == "converged"
     assert (decimal("0.5 at 1.25"), numbers(["0.5", "1.5"])) == ("0.5 at 1.25", "0.5, 1.5")
     assert counted(2, "iteration") == "2 iterations"
     with spoken("id"):
-        assert say("end <value>", value=3) == "akhir 3"
+        assert say("final value <value>", value=3) == "akhir 3"
         assert (decimal("0.5 at 1.25"), numbers(["0.5", "1.5"])) == ("0,5 at 1,25", "0,5; 1,5")
         assert counted(2, "iteration") == "2 iterasi"
         assert message("converged; nobody says this") == "converged; nobody says this"
@@ -228,7 +228,9 @@ def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch
         monkeypatch.setenv(said.VARIABLE, variable)
         code, out, err = run(*arguments)
         assert (code, out) == (3, "")
-        assert re.fullmatch(r'satsym: \S+: there are no texts in the language "..", ?.*\n'.replace('", ?', '"; '), err)
+        assert re.fullmatch(
+            r'satsym: \S+: there is no translation into the language "..", ?.*\n'.replace('", ?', '"; '), err
+        )
 
 
 @pytest.mark.parametrize(

@@ -186,7 +186,7 @@ def test_a_latest_time_presses_by_the_cost_it_causes_where_a_constraint_holds_th
 def test_a_latest_time_that_is_none_is_said():
     given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}}
     before = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": -1.0, "c": 0.5}, tf="free", **given))
-    assert "late: no final time after the start satisfies it" in before.to_dict()["message"]
+    assert "late: no final time after the initial time satisfies it" in before.to_dict()["message"]
     past = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": 1.0}, tf=2.0, **given))
     assert "late: the given final time 2 does not satisfy it" in past.to_dict()["message"]
     in_time = certified(BACK_BY, parameters={"k": 3.0}, tf=2.0, **given)

@@ -92,7 +92,7 @@ def test_no_answer_is_none(pair: Pair):
     answer = pair.bounded.solve(initial=(1.3, 0.0, 0.0, 0.9))
     assert not answer.status.answered
     assert np.isnan(answer.objective)
-    with pytest.raises(ValueError, match="no answer"):
+    with pytest.raises(ValueError, match="no solution"):
         pair.bounded.solution(answer)
     assert pair.bounded.solve().status is Status.CONVERGED
 

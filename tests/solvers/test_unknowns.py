@@ -206,7 +206,7 @@ def test_the_slope_by_a_parameter_is_that_of_the_least_cost(of: Problem, final: 
     ],
 )
 def test_what_nothing_decides_is_refused(of: Problem, given: dict[str, Any], named: str) -> None:
-    why = '"free", but neither the cost nor the conditions at the end depend on it; give it a number'
+    why = '"free", but neither the cost nor the final conditions depend on it; give it a number'
     with pytest.raises(BadInput, match=rf"^\w+: {named}: {why}$"):
         solved(of, **given)
 

@@ -184,7 +184,7 @@ def test_ends_that_no_control_reaches_are_known_from_the_planes_of_others(monkey
     found = unreachable.unreachable(problems, cases, np.arange(len(cases)))
     assert sorted(found) == [k for k, time in enumerate(least) if time > case.tf]
     assert len(looked) < len(cases)
-    assert all("separate this end from the reachable set" in message for message in found.values())
+    assert all("separate this final state from the reachable set" in message for message in found.values())
 
 
 def test_rows_beyond_reach_are_not_solved_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -226,6 +226,8 @@ def test_what_wider_bounds_do_not_reach_narrower_ones_do_not() -> None:
     assert [found[f"1.3 {upper}"].status for upper in bounds] == ["infeasible"] * 3 + ["converged"]
     assert found["1.3 0.3"].message == "none arrives"
     for upper in (0.1, 0.2):
-        assert found[f"1.3 {upper}"].message.startswith("the end is not reached even with wider bounds: none arrives")
+        assert found[f"1.3 {upper}"].message.startswith(
+            "the final state is not reached even with wider bounds: none arrives"
+        )
     assert {upper for r, upper in tried if r == 1.3} == {0.3, 0.4}
     assert {upper for r, upper in tried if r == 1.4} == {0.2, 0.3, 0.4}

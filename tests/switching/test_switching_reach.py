@@ -146,7 +146,7 @@ def test_durations_that_lead_to_an_end_need_not_be_an_interval(weak: Instance) -
         if expected is not None:
             assert found.objective == pytest.approx(expected, rel=1e-3)
         elif tf > first:
-            assert "separate this end from the reachable set" in found.message
+            assert "separate this final state from the reachable set" in found.message
 
 
 def test_costates_separate_only_what_is_not_reached() -> None:

@@ -204,7 +204,7 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
         left, size = np.full(n, np.inf), np.zeros(n)
     if not ((left <= AT_REST * size).all() and model.in_domain(point)):
         raise BadInput(
-            f"{where}: no equilibrium of {model.spec.name} was found from the start "
+            f"{where}: no equilibrium of {model.spec.name} was found from the initial point "
             f"({', '.join(f'{v:.6g}' for v in start)}); start near an equilibrium, or declare a reference in the model"
         )
     return point

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\b
 Examples:
-  satsym analyse itb-earth --plot       an orbit: its type, its monodromy matrix, what its stability means
+  satsym analyse itb-earth --plot       an orbit: its type, its monodromy matrix, and the meaning of its stability
   satsym analyse clohessy_wiltshire     a satellite near a circular orbit
   satsym analyse soft-return-geo        a nonlinear model about its reference, in kilometres and seconds
   satsym analyse gyrostat-equilibria    all equilibrium attitudes of a satellite with a wheel
@@ -39,9 +39,10 @@ def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) ->
 
     X is a shipped model or instance, or the path of one. For a model: eigenvalues with their Jordan blocks, stability
     and its reason, the Routh array, and the controllable and observable subspaces, numerically and, for linear
-    models, exactly. For an instance that starts on an orbit: its elements and type, the eigenvalues at the start and
-    why they decide nothing, the monodromy matrix and the Floquet multipliers. For the attitude of a satellite in
-    orbit: all equilibria, counted exactly, and how their number and stability change with the momentum of the wheel.
+    models, exactly. For an instance that starts on an orbit: its elements and type, the eigenvalues at the initial
+    point and why they do not decide stability, the monodromy matrix and the Floquet multipliers. For the attitude of
+    a satellite in orbit: all equilibria, counted exactly, and how their number and stability change with the momentum
+    of the wheel.
     """
     from satsym.analysis.subject import examined, find
     from satsym.report.results.linear import attitudes

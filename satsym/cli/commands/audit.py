@@ -17,10 +17,10 @@ EXAMPLES = """\b
 Examples:
   satsym audit                          all documents that come with satsym
   satsym audit its_thesis --item 4.27   one equation, recomputed
-  satsym audit --html audit.html        a page of all of them, for people
+  satsym audit --html audit.html        one page with the audits of all documents
   satsym audit my_ledger.toml --latex report.tex --lang id
-  satsym audit --coverage               which numbers of the documents have no row
-  satsym audit its_thesis --coverage --text thesis.txt   what in a text has no row"""
+  satsym audit --coverage               the numbered items of the documents that have no ledger row
+  satsym audit its_thesis --coverage --text thesis.txt   the parts of a text that have no ledger row"""
 
 
 @command(epilog=EXAMPLES)
@@ -28,17 +28,21 @@ Examples:
 @json_option
 @place_option("--html", metavar="FILE", help="Also write a report as an HTML page.")
 @place_option("--latex", metavar="FILE", help="Also write a report as a LaTeX document.")
-@click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
-@click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
-@place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
+@click.option("--item", "items", metavar="X", multiple=True, help="Check only this item; may be repeated.")
+@click.option(
+    "--coverage",
+    is_flag=True,
+    help="List the numbered items of the document that have no row in its ledger, and check nothing.",
+)
+@place_option("--text", metavar="FILE", help="With --coverage: compare the ledger with this text of the document.")
 @place_option(
     "--keep",
     metavar="FILE",
     help="With --text: write the numbers found in the text to this file, to be kept with the ledger.",
 )
-@click.option("--rows", is_flag=True, help="After the findings, print every row that is not fully confirmed.")
-@click.option("--code", is_flag=True, help="Also print, as code, what was tested and what was measured.")
-@click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
+@click.option("--rows", is_flag=True, help="After the findings, print every ledger row that is not fully confirmed.")
+@click.option("--code", is_flag=True, help="Also print the tests and the measurements as code.")
+@click.option("--fresh", is_flag=True, help="Recompute everything, without the cache.")
 def audit(
     ledgers: tuple[str, ...],
     as_json: bool,
@@ -52,11 +56,12 @@ def audit(
     code: bool,
     fresh: bool,
 ) -> ExitCode:
-    """Judge what documents print.
+    """Check the formulas and statements in a document.
 
-    Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives.
-    LEDGER is a document that comes with satsym, or a TOML file that lists what a document prints and what each item
-    is to be checked against. Verdicts are computed, never read. The exit code is 0 whatever the verdicts.
+    Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives. LEDGER
+    is a document that comes with satsym, or a TOML file that lists the items of a document and says what each of them
+    is to be checked against. Every verdict is computed; a ledger cannot contain verdicts. The exit code is 0 whatever
+    the verdicts.
     """
     from satsym import auditing
     from satsym.auditing import cache
@@ -93,7 +98,11 @@ def audit(
     drafts = sum(row.table.draft for ledger in read for row in ledger.rows)
     remark = [
         "",
-        counted(drafts, "this row is a draft and has not been confirmed", "rows are drafts that nobody has confirmed"),
+        counted(
+            drafts,
+            "ledger row is a draft that has not been confirmed",
+            "ledger rows are drafts that have not been confirmed",
+        ),
     ]
 
     def text_of_it() -> str:

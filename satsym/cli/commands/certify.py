@@ -15,9 +15,9 @@ from satsym.status import ExitCode, Verdict
 EXAMPLES = """\b
 Examples:
   satsym solve soft-return --out answer     writes a result
-  satsym certify answer                     examines it again, here or on another machine
+  satsym certify answer                     examines that result again, here or on another machine
 
-Exit codes: 0 the result holds, 3 the folder cannot be used, 4 it holds no answer,
+Exit codes: 0 the result is confirmed, 3 the folder cannot be used, 4 the folder contains no solution,
 5 an optimality condition is violated, or a number in result.json does not agree with the other files."""
 
 

@@ -37,7 +37,7 @@ In single quotes the shell leaves backslashes alone."""
 @click.option("--free", is_flag=True, help="The formula describes the uncontrolled motion.")
 @json_option
 def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
-    """Say whether a printed formula is right, or what is wrong.
+    """Check whether a printed formula is right, and say what is wrong with it.
 
     FORMULA is LaTeX or plain notation. It is checked against every equation that satsym derives for the model, in any
     rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects it.

@@ -19,8 +19,8 @@ from satsym.status import ExitCode
 EXAMPLES = """\b
 Examples:
   satsym derive                         all of derivations/ into generated/ (in a checkout)
-  satsym derive --check                 does generated/ still say what derivations/ says?
-  satsym derive --fresh                 all of it anew, whatever was derived before
+  satsym derive --check                 check that generated/ agrees with derivations/
+  satsym derive --fresh                 everything again, even what has not changed
   satsym derive my_model.py --out DIR   your own; then write model = "DIR/NAME" in an instance
 
 A derivation file is Python and is executed: derive only files that you trust."""
@@ -33,7 +33,7 @@ MAX_SECONDS = 900.0
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write into this folder instead of generated/ in the checkout.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
-@click.option("--fresh", is_flag=True, help="Derive everything anew, even what has not changed.")
+@click.option("--fresh", is_flag=True, help="Derive everything again, even what has not changed.")
 @click.option(
     "--max-seconds",
     type=click.FloatRange(min=0.0, min_open=True),

@@ -15,12 +15,12 @@ from satsym.status import ExitCode, Status
 
 EXAMPLES = """\b
 Examples:
-  satsym prove return-to-orbit          a proof for the answer, with 20 digits
+  satsym prove return-to-orbit          a proof of the solution, with 20 digits
   satsym prove my_case.toml --json      the same for another program
   satsym prove soft-return --latex soft-return.tex
 
-Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved here (it says which feature),
-5 not proved (it says which step fails)."""
+Exit codes: 0 proved, 3 the instance cannot be used, 4 the problem has a feature that no theorem used here covers
+(the message names it), 5 not proved (the message names the step that fails)."""
 
 
 @command(epilog=EXAMPLES)
@@ -37,7 +37,7 @@ Exit codes: 0 proved, 3 the instance cannot be used, 4 beyond what is proved her
 def prove(
     subject: str, digits: int, document: Path | None, values: tuple[str, ...], as_json: bool, out: Path | None
 ) -> ExitCode:
-    """Prove that the answer is a strict local minimum.
+    """Prove that the solution is a strict local minimum.
 
     X is a shipped instance or the path of a TOML file. The instance is solved first. Then ball arithmetic, in which
     every number carries a bound on its error, proves that an extremal exists, that there is no other one nearby, and

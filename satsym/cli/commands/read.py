@@ -15,9 +15,9 @@ from satsym.status import BadInput, ExitCode
 EXAMPLES = """\b
 Examples:
   satsym read paper.tex --model hill        drafts paper.ledger.toml beside the paper
-  satsym read paper.tex                     again: what was confirmed is kept
+  satsym read paper.tex                     the same again: confirmed rows are kept
   satsym read notes.md --model DIR/sled --out notes.toml
-  satsym audit paper.ledger.toml            judges it"""
+  satsym audit paper.ledger.toml            checks the document"""
 
 
 @command(epilog=EXAMPLES)
@@ -35,9 +35,9 @@ Examples:
 def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
     """Draft a ledger of a document. The ledger lists the displayed formulas, and what each is to be checked against.
 
-    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; a person
-    confirms a row by taking out its line `draft = true`. If the document is read again, confirmed
-    rows are kept. What cannot be read is listed with its place.
+    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; you confirm
+    a row by deleting its line `draft = true`. If the document is read again, confirmed rows are kept. Formulas that
+    cannot be read are listed with their places.
     """
     from satsym.auditing.document import drafting
     from satsym.report.results.files import write_text

@@ -37,9 +37,9 @@ Examples:
 )
 @click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
 @place_option(
-    "--study", "study", metavar="DIR", help="With --interactive: a study of X; a slider chooses among its answers."
+    "--study", "study", metavar="DIR", help="With --interactive: a study of X; a slider chooses among its solutions."
 )
-@click.option("--prove", "proving", is_flag=True, help="Add the proof of the answer, as by `satsym prove`.")
+@click.option("--prove", "proving", is_flag=True, help="Add the proof of the solution, as by `satsym prove`.")
 @set_option
 def report(
     subject: str,
@@ -52,7 +52,7 @@ def report(
 ) -> ExitCode:
     """Solve an instance, and show everything on one page.
 
-    X is an instance as for `satsym solve`. The page holds the problem, the answer, its certificate, the motion,
+    X is an instance as for `satsym solve`. The page contains the problem, the solution, its certificate, the motion,
     pictures and the derivation, and loads nothing from elsewhere. FILE.py is Python and is executed. With
     --interactive, the page also contains scripts; a browser without scripts still shows everything else. The study in
     DIR must have been made with --trajectories.

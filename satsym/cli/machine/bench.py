@@ -86,7 +86,7 @@ def _text(found: Mapping[str, Any]) -> str:
         *table(rows, right=(1, 2, 3)),
     ]
     if solve is not None and solve["certificate_s"] is None:
-        lines += ["", *wrapped(say("the instance has no answer: <said_status>", said_status=found["status"]))]
+        lines += ["", *wrapped(say("the instance has no solution: <said_status>", said_status=found["status"]))]
     if all(one["backend"] == "numpy" for one in steps):
         lines += ["", *wrapped(say("numba is not installed: pip install 'satsym[fast]'"))]
     return "\n".join(lines)

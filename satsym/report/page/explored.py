@@ -211,7 +211,7 @@ def _relative(orbit: Orbit, kept: NDArray[np.intp]) -> Data:
     own: Data = {
         "kind": "plane",
         "free_aspect": True,
-        "title": say("seen from the reference"),
+        "title": say("relative to the reference"),
         "labels": [shown(labelled(say(name), measure.unit)) for name in ("along-track", "radial")],
         "low": _numbers(low * scale),
         "high": _numbers(high * scale),

@@ -209,7 +209,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
             if sudden:
                 said = say("<total>, of which <sudden> as an impulse", total=said, sudden=decimal(f"{sudden:.4g}"))
             if key == "transition_time" and case.how == "classical":
-                settled = say("<time> until it stays within <share>", time=said, share=f"{SETTLING_BAND:.0%}")
+                settled = say("settled to within <share> after <time>", time=said, share=f"{SETTLING_BAND:.0%}")
                 said = settled if np.isfinite(value) else say("not settled")
             # the text beside a bar is inside the axes, too
             far.append(float(np.nan_to_num(value)) / (1.0 - min(0.7, (style.length(said, 9.0) + 0.15) / room)))

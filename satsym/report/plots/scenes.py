@@ -253,7 +253,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     scale = 1.0 / measure.divisor
     axes.set_xlim(low[0] * scale, high[0] * scale)
     axes.set_ylim(low[1] * scale, high[1] * scale)
-    axes.set_title(say("seen from the reference"))
+    axes.set_title(say("relative to the reference"))
     surroundings.draw_from_reference(axes, orbit.around, scale)
     axes.axhline(0.0, **style.REFERENCE)
     if orbit.free_relative is not None:

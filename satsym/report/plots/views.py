@@ -86,6 +86,6 @@ def _along_normal(path: Array, normal: Array) -> View:
     towards, name = (
         (say("towards periapsis"), say("perifocal axes"))
         if near
-        else (say("towards the start"), say("in the plane of the motion"))
+        else (say("towards the initial point"), say("in the plane of the motion"))
     )
     return View(np.vstack([first, np.cross(normal, first)]), (towards, say("at right angles")), name)

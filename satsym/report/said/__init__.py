@@ -64,7 +64,7 @@ def known(name: str, place: str) -> str:
 
     if name not in texts.languages():
         raise BadInput(
-            f"{place}: there are no texts in the language {shown(name)}; {suggestion(name, texts.languages())}"
+            f"{place}: there is no translation into the language {shown(name)}; {suggestion(name, texts.languages())}"
         )
     return name
 

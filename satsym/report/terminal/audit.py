@@ -237,7 +237,7 @@ def _understood(answer: Answer) -> str:
     letters = ", ".join(f"{printed} = {ours}" for printed, ours in answer.letters.items())
     parts = [letters, say("the uncontrolled motion") if answer.free else ""]
     said = ", ".join(filter(None, parts))
-    return say("symbols taken as: <letters> (to correct one: --let LETTER=NAME)", letters=said) if said else ""
+    return say("symbols interpreted as: <letters> (to correct one: --let LETTER=NAME)", letters=said) if said else ""
 
 
 def _line(answer: Answer) -> str:
@@ -264,7 +264,7 @@ def drafted_text(ledger: Path, found: Draft) -> str:
     counted = Counter(row["verdict"] for row in found.rows)
     lines = [
         say(
-            "<ledger>: <rows> rows drafted, <kept> confirmed rows retained",
+            "<ledger>: <rows> ledger rows drafted, <kept> confirmed rows kept",
             ledger=ledger,
             rows=len(found.rows),
             kept=found.kept,
@@ -277,4 +277,4 @@ def drafted_text(ledger: Path, found: Draft) -> str:
     lines += [
         say("<place>: not understood: <said_why>", place=place, said_why=message(why)) for place, why in found.undecided
     ]
-    return "\n".join([*lines, say("confirm the rows, then: satsym audit <ledger>", ledger=ledger)])
+    return "\n".join([*lines, say("confirm the rows of the ledger, then: satsym audit <ledger>", ledger=ledger)])

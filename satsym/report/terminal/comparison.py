@@ -28,7 +28,7 @@ MEANINGS = {
     "_energy": "integral of the power; infinite with an impulse",
     "_final": "value at the final time",
     "_driven": "largest deviation from the undriven motion",
-    "_share": "rate of the constraint caused by the control that keeps to it, relative to the largest along the arc",
+    "_share": "effect of the boundary control on the rate of the constraint, relative to its largest value on the arc",
 }
 """Meanings of metrics, by their names or endings."""
 
@@ -80,7 +80,7 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
         (
             case.instance.name,
             message(case.how),
-            message(case.verdict) if case.verdict else "" if case.answered else say("no answer"),
+            message(case.verdict) if case.verdict else "" if case.answered else say("no solution"),
             message(case.message),
         )
         for case in cases

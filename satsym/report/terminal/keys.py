@@ -74,7 +74,7 @@ def page() -> str:
 def _blocks() -> list[tuple[str, list[tuple[str, ...]]]]:
     """Return the tables with the cells of their keys."""
     return [
-        (f"[{place}]" if place else "Above all tables", [_cells(entry) for entry in group])
+        (f"[{place}]" if place else "Before the first table", [_cells(entry) for entry in group])
         for place, group in groupby(entries(), key=lambda entry: entry.table)
     ]
 

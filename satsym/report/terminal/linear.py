@@ -123,7 +123,7 @@ def _mode_table(found: Analysis) -> list[str]:
         )
         for each in found.modes
     ]
-    return table([(*header, say("carried by")), *rows], right=(2, 3, 4))
+    return table([(*header, say("dominant states")), *rows], right=(2, 3, 4))
 
 
 def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:

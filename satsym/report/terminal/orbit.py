@@ -70,11 +70,11 @@ def _elements(found: Survey, length: str, time: str) -> list[str]:
         ("", None if readable in (time, "1") or orbit.period is None else own / factor, readable),
         (say("energy"), orbit.energy, _squared(length, time)),
         (say("angular momentum"), momentum, _per(f"{length}^2" if length != "1" else "1", time)),
-        (say("speed at infinity"), orbit.excess_speed, speed),
+        (say("hyperbolic excess speed"), orbit.excess_speed, speed),
         (say("inclination"), _degrees(orbit.inclination), "deg"),
         (say("longitude of the node"), _degrees(orbit.node), "deg"),
         (say("argument of periapsis"), _degrees(orbit.periapsis_argument), "deg"),
-        (say("true anomaly at the start"), _degrees(orbit.true_anomaly), "deg"),
+        (say("initial true anomaly"), _degrees(orbit.true_anomaly), "deg"),
     ]
     shown = [
         (name, figure(value, DIGITS), unit if unit != "1" else "") for name, value, unit in rows if value is not None
@@ -83,14 +83,14 @@ def _elements(found: Survey, length: str, time: str) -> list[str]:
 
 
 _BORDERS = {
-    Conic.CIRCLE: "called a circle: the eccentricity is at most <tolerance>",
-    Conic.ELLIPSE: "called an ellipse: the eccentricity exceeds <tolerance>, the limit for a circle, and the squared "
-    "speed is below the squared escape speed by more than a relative <tolerance>",
-    Conic.PARABOLA: "called a parabola: the squared speed equals the squared escape speed within a relative tolerance "
-    "of <tolerance>",
-    Conic.HYPERBOLA: "called a hyperbola: the squared speed exceeds the squared escape speed by more than a relative "
-    "<tolerance>",
-    Conic.RECTILINEAR: "called rectilinear: the velocity is along the radius within <tolerance> rad",
+    Conic.CIRCLE: "classified as a circle: the eccentricity is at most <tolerance>",
+    Conic.ELLIPSE: "classified as an ellipse: the eccentricity exceeds <tolerance>, the limit for a circle, and the "
+    "squared speed is below the squared escape speed by more than a relative <tolerance>",
+    Conic.PARABOLA: "classified as a parabola: the squared speed equals the squared escape speed within a relative "
+    "tolerance of <tolerance>",
+    Conic.HYPERBOLA: "classified as a hyperbola: the squared speed exceeds the squared escape speed by more than a "
+    "relative <tolerance>",
+    Conic.RECTILINEAR: "classified as rectilinear: the velocity is along the radius within <tolerance> rad",
 }
 
 
@@ -108,7 +108,7 @@ def _point(found: Point, length: str, time: str) -> list[str]:
         text = "the same rule in the model's own coordinates: <verdict>, from <eigenvalues>"
         own = wrapped(say(text, verdict=message(found.own_verdict or "undecided"), eigenvalues=listed))
     return [
-        *wrapped(say("the Jacobian at the start, <distance> from the centre:", distance=at)),
+        *wrapped(say("the Jacobian at the initial point, <distance> from the centre:", distance=at)),
         *table([header, *rows], right=(0, 1)),
         *wrapped(say(rule, verdict=verdict, other=other)),
         *own,
@@ -137,7 +137,7 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         (
             "det M - 1",
             figure(matrix.determinant - 1.0, 2),
-            say("over one revolution from the start" if circle else "over one revolution from apoapsis"),
+            say("over one revolution from the initial point" if circle else "over one revolution from apoapsis"),
         ),
         ("M'JM - J", figure(matrix.symplectic_defect, 2), say("relative; 0 for a symplectic M")),
         (

@@ -90,6 +90,8 @@ def load(language: str) -> Texts:
     import tomllib
 
     if language not in languages():
-        raise BadInput(f"there are no texts in the language {shown(language)}; there are {', '.join(languages())}")
+        raise BadInput(
+            f"there is no translation into the language {shown(language)}; there are {', '.join(languages())}"
+        )
     tables: dict[str, Any] = tomllib.loads((_FOLDER / f"{language}.toml").read_text(encoding="utf-8"))
     return Texts(language, tables)

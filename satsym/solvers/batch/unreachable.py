@@ -38,7 +38,7 @@ def unreachable(many: Many, instances: Sequence[Instance], which: NDArray[np.int
             one = instances[k]
             assert one.tf is not None
             found[k] = (
-                f"no control within its bounds reaches the given end in {one.tf - one.t0:.10g}: "
+                f"no control within its bounds reaches the given final state in {one.tf - one.t0:.10g}: "
                 f"{separated_by(one, plane.costate)}"
             )
         beyond[0] = True

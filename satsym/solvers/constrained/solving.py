@@ -52,7 +52,7 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
     """
     waiting: list[tuple[Structure, Arcs | None]] = [(one, None) for one in first]
     seen: Counter[tuple[object, ...]] = Counter()
-    reason = "the equations of its arcs could not be solved"
+    reason = "the equations of the arcs could not be solved"
     while waiting and seen.total() < REVISED and not limits.expired:
         structure, before = waiting.pop(0)
         if seen[structure.key] >= REPEATED:

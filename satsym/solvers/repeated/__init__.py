@@ -104,7 +104,7 @@ class Repeated:
         if instance.end_limits:
             name = next(iter(instance.end_limits))
             raise BadInput(
-                f"{instance.called}: repeated solving does not determine whether {name} is active at the end"
+                f"{instance.called}: repeated solving does not determine whether {name} is active at the final time"
             )
         if instance.solver.free_angles:
             raise BadInput(
@@ -184,7 +184,7 @@ class Repeated:
             If there was none.
         """
         if not answer.status.answered:
-            raise ValueError(f"no answer: {answer.message}")
+            raise ValueError(f"no solution: {answer.message}")
 
         def method(instance: Instance, limits: Limits) -> Extremal:
             return self._means.full(answer.extremal, limits)

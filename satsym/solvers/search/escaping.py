@@ -47,7 +47,10 @@ def escape(instance: Instance) -> str:
         found = _along(instance, direction, finite, infinite)
         if found is not None:
             sizes, costs = (", ".join(f"{value:.4g}" for value in row[-LAST:]) for row in found)
-            return f"motions escape within their time: constant controls up to {sizes} have the costs {costs}"
+            return (
+                "some motions become unbounded before the final time: "
+                f"constant controls up to {sizes} have the costs {costs}"
+            )
     return ""
 
 

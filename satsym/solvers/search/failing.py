@@ -245,4 +245,6 @@ def contradiction(instance: Instance, limits: Limits) -> str:
     if not left[1] > max(UNAVOIDABLE, REMAINING * left[0]):
         return ""
     against = ", ".join(names)
-    return f"no motion to the given end satisfies the path constraints ({against}): one of them is always violated"
+    return (
+        f"no motion to the given final state satisfies the path constraints ({against}): one of them is always violated"
+    )

@@ -93,7 +93,7 @@ class Nearest:
             for name, value in self.missed.items()
         )
         return (
-            f"no control within the bounds was found to reach the given end: the nearest of {self.starts} "
+            f"no control within the bounds was found that reaches the given final state: the best of {self.starts} "
             f"local searches misses {misses}"
         )
 
@@ -147,7 +147,7 @@ def _solved(instance: Instance, limits: Limits) -> Iterator[Found]:
     for number, plan in enumerate(PLANS, 1):
         if limits.expired:
             return
-        activity.tell(f"checking whether the end can be reached: search {number} of {len(PLANS)} ...")
+        activity.tell(f"checking whether the final state can be reached: search {number} of {len(PLANS)} ...")
         with np.errstate(all="ignore"):
             found = arriving(instance, controls, [mesh], plan, limits)
         yield found

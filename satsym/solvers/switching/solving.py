@@ -150,7 +150,8 @@ def _by_least_time(
     least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
     if found.origin is Origin.REACH and least > given * (1.0 + SHORTFALL):
         message = (
-            f"the minimum time to the given end is {least:.10g} (structure {name}), but only {given:.10g} is allowed"
+            f"the minimum time to the given final state is {least:.10g} (structure {name}), but only {given:.10g} is "
+            f"allowed"
         )
         return replace(stopped, status=Status.INFEASIBLE, message=message)
     near = attempt(instance, _with_coasts(instance, found), limits) if least < given else None
@@ -159,7 +160,7 @@ def _by_least_time(
     if stopped.status is Status.INFEASIBLE:
         return stopped
     alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= SHORTFALL else ""
-    message = f"{stopped.message}; the minimum time to the given end is {least:.10g} (structure {name}){alone}"
+    message = f"{stopped.message}; the minimum time to the given final state is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
 
 

@@ -145,7 +145,7 @@ def _begin(trials: Trials) -> Trial | Solution:
             here = here or trials(step * axis)
     if here is None:
         names = ", ".join(unknown.name for unknown in trials.unknowns)
-        message = f"no answer with any of {counted(trials.tried, 'choice')} of {names}; give initial guesses"
+        message = f"no solution with any of {counted(trials.tried, 'choice')} of {names}; give initial guesses"
         return _unanswered(trials, Status.NOT_CONVERGED, message)
     return here
 
@@ -251,7 +251,7 @@ def _first_form(trials: Trials, here: Trial) -> Array:
                 idle += [trials.unknowns[k]] if still else []
                 break
     for unknown in idle:
-        reason = "neither the cost nor the conditions at the end depend on it; give it a number"
+        reason = "neither the cost nor the final conditions depend on it; give it a number"
         raise BadInput(f'{trials.instance.called}: {unknown.key}: "free", but {reason}')
     return np.asarray((form + form.T) / 2.0)
 

@@ -24,7 +24,7 @@ class Outcome(str, Enum):
     AGREED = "agreed"
     OURS = "ours cheaper"
     THEIRS = "theirs cheaper"
-    NONE = "no answer"
+    NONE = "no solution"
     UNJUDGED = "unjudged"
     """The independent side found nothing."""
 

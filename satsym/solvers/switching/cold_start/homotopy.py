@@ -110,7 +110,7 @@ def _near(instance: Instance, course: Course, limits: Limits) -> Smoothed:
         if limits.expired:
             break
         smoothing /= TIGHTER
-    raise Stopped(Status.NOT_CONVERGED, "no smoothed extremal was found near the motion of the search")
+    raise Stopped(Status.NOT_CONVERGED, "no smoothed extremal was found near the motion that the search found")
 
 
 def _itself(problem: TwoPoint, _: float) -> TwoPoint:

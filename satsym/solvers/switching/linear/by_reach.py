@@ -87,7 +87,7 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
     missed = reach.nearest_miss()
     misses = ", ".join(f"{names[i]} by {abs(value):.3g}" for i, value in zip(rows, missed, strict=True))
     return (
-        f"no control within its bounds reaches the given end in {instance.tf - instance.t0:.10g}: the nearest "
+        f"no control within its bounds reaches the given final state in {instance.tf - instance.t0:.10g}: the nearest "
         f"control misses {misses}, and {separated_by(instance, costate)}"
     )
 
@@ -96,7 +96,7 @@ def separated_by(instance: Instance, costate: Array) -> str:
     """What separates an end, in words."""
     names, largest = instance.model.spec.state_names, np.abs(costate).max()
     each = ", ".join(f"{names[i]}: {costate[i] / largest:.3g}" for i in given_rows(instance))
-    return f"the final costates ({each}) separate this end from the reachable set"
+    return f"the final costates ({each}) separate this final state from the reachable set"
 
 
 def separating(instance: Instance) -> Plane | None:
