@@ -60,7 +60,9 @@ def test_json_has_the_rows_and_how_many_of_each_verdict(audited: Run, tmp_path: 
     assert found["counts"] == {"confirmed": 2, "misprint": 2}
     assert [entry["item"] for entry in found["rows"]] == ["1", "2", "table 1", "3"]
     assert [entry["printed"] for entry in found["rows"]][2:] == ["35786 km", MATRIX["printed"]]
-    assert found["rows"][1]["diagnosis"].startswith("The sign of `u2` is reversed. The document has it right in 1.")
+    assert found["rows"][1]["diagnosis"].startswith(
+        "The sign of `u2` is reversed. The document has the right form in 1."
+    )
 
 
 def test_what_is_right_is_said_first(audited: Run, tmp_path: Path) -> None:

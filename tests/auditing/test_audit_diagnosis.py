@@ -51,22 +51,22 @@ SLIPS = {
     "sign of a bracket": ("d_x4 = (2*x2*x4 - u2)/x1", TANGENTIAL, "The sign of `(2*x2*x4 - u2)/x1` is reversed."),
     "index": ("d_x4 = (u1 - 2*x2*x4)/x1", TANGENTIAL, "`u1` should be `u2`."),
     "index on the left": ("d_x3 = (u2 - 2*x2*x4)/x1", TANGENTIAL, "In the left-hand side `d_x3` should be `d_x4`."),
-    "factor": ("d_x4 = (u2 - x2*x4)/x1", TANGENTIAL, "`x2*x4` should be `2*x2*x4`, a matter of a factor."),
-    "odd factor": ("d_x4 = (u2 - 14*x2*x4)/x1", TANGENTIAL, "`-14*x2*x4` should be `-2*x2*x4`, a matter of a factor."),
-    "exponent": ("d_x2 = x1*x4**2 - g/x1**3 + u1", RADIAL, "`x1**3` should be `x1**2`, a matter of an exponent."),
-    "no exponent": ("d_x2 = x1*x4 - g/x1**2 + u1", RADIAL, "`x4` should be `x4**2`, a matter of an exponent."),
+    "factor": ("d_x4 = (u2 - x2*x4)/x1", TANGENTIAL, "`x2*x4` should be `2*x2*x4`: a factor is wrong."),
+    "odd factor": ("d_x4 = (u2 - 14*x2*x4)/x1", TANGENTIAL, "`-14*x2*x4` should be `-2*x2*x4`: a factor is wrong."),
+    "exponent": ("d_x2 = x1*x4**2 - g/x1**3 + u1", RADIAL, "`x1**3` should be `x1**2`: an exponent is wrong."),
+    "no exponent": ("d_x2 = x1*x4 - g/x1**2 + u1", RADIAL, "`x4` should be `x4**2`: an exponent is wrong."),
     "missing term": ("d_x2 = x1*x4**2 - g/x1**2", RADIAL, "The term `+u1` is missing."),
     "missing term in a bracket": ("d_x4 = -(2*x2*x4)/x1", TANGENTIAL, "The term `+u2/x1` is missing."),
-    "term too many": ("d_x2 = x1*x4**2 - g/x1**2 + u1 + u2", RADIAL, "has a term too many"),
-    "factor too many": ("d_x2 = x1*x4**2*x1 - g/x1**2 + u1", RADIAL, "a factor too many"),
+    "term too many": ("d_x2 = x1*x4**2 - g/x1**2 + u1 + u2", RADIAL, "there is one term too many"),
+    "factor too many": ("d_x2 = x1*x4**2*x1 - g/x1**2 + u1", RADIAL, "there is one factor too many"),
     "factor twice": (
         "x1*(x2 + x1*u1*x4)",
         "r*(r_dot + u1*theta_dot)",
-        "`x1*u1*x4` should be `u1*x4`: a factor too many.",
+        "`x1*u1*x4` should be `u1*x4`: there is one factor too many.",
     ),
-    "missing factor": ("d_x4 = (u2 - 2*x2)/x1", TANGENTIAL, "`2*x2` lacks a factor: it should be `2*x2*x4`."),
+    "missing factor": ("d_x4 = (u2 - 2*x2)/x1", TANGENTIAL, "`2*x2` should be `2*x2*x4`: a factor is missing."),
     "other letter": ("d_x2 = x1*x4**2 - m/x1**2 + u1", RADIAL, "`m` should be `g`."),
-    "upside down": ("d_x4 = x1/(u2 - 2*x2*x4)", TANGENTIAL, "`x1/(u2 - 2*x2*x4)` is upside down."),
+    "upside down": ("d_x4 = x1/(u2 - 2*x2*x4)", TANGENTIAL, "The fraction `x1/(u2 - 2*x2*x4)` is inverted."),
     "two slips": ("d_x2 = -x1*x4**2 - g/x1**3 + u1", RADIAL, "`x1**3` should be `x1**2`"),
     "two slips of a sign": (
         "d_lambda1 = -(x4**2*lambda2 - 2*g/x1**3*lambda2 - (2*x2*x4 - u2)/x1**2*lambda4)",
@@ -74,17 +74,17 @@ SLIPS = {
         "The sign of `2*g/x1**3*lambda2` is reversed; the sign of `(2*x2*x4 - u2)/x1**2*lambda4` is reversed.",
     ),
     "everywhere": ("d_x2 = x2*x4**2 - g/x2**2 + u1", RADIAL, "`x2` should be `x1` at 2 places."),
-    "beyond repair": ("d_x2 = x3**3 + u2*x1", RADIAL, "No small edit puts it right; it "),
+    "beyond repair": ("d_x2 = x3**3 + u2*x1", RADIAL, "No small change corrects the formula; "),
 }
 MATRICES = {
     "rows": ([["1", "0"], ["0", "0"], ["0", "0"], ["0", "1/x1"]], "Rows 1 and 2 are exchanged."),
     "columns": ([["0", "0"], ["0", "1"], ["0", "0"], ["1/x1", "0"]], "Columns 1 and 2 are exchanged."),
     "entries": ([["0", "0"], ["1/x1", "0"], ["0", "0"], ["0", "1"]], "The entries (2, 1) and (4, 2) are exchanged."),
-    "size": ([["0", "0"]], "The size does not fit: 1 by 2 is printed, it is 4 by 2."),
+    "size": ([["0", "0"]], "The size does not fit: the printed matrix is 1 by 2, but should be 4 by 2."),
     "entry": ([["0", "0"], ["1", "0"], ["0", "0"], ["0", "-1/x1"]], "Entry (4, 2): the sign of `1/x1` is reversed."),
     "two entries": (
         [["0", "0"], ["-1", "0"], ["0", "0"], ["0", "1/x1**2"]],
-        "Entry (2, 1): the sign of `1` is reversed; entry (4, 2): `x1**2` should be `x1`, a matter of an exponent.",
+        "Entry (2, 1): the sign of `1` is reversed; entry (4, 2): `x1**2` should be `x1`: an exponent is wrong.",
     ),
 }
 
@@ -124,7 +124,7 @@ def test_what_is_put_right_is_shown_as_the_document_writes(slips: dict[str, audi
 
 
 def test_wrong_dimensions_are_told_beside_the_slip(slips: dict[str, auditing.Judged]) -> None:
-    assert "Its dimensions show it, too: it puts" in slips["no exponent"].diagnosis
+    assert "The dimensions also reveal the error: the formula combines" in slips["no exponent"].diagnosis
     assert "dimensions" not in slips["sign"].diagnosis
 
 

@@ -128,7 +128,7 @@ def test_what_only_looks_alike_is_not_confirmed(satellite: dict[str, auditing.Ju
 
 
 def test_a_matrix_of_another_size_is_told(satellite: dict[str, auditing.Judged]) -> None:
-    assert "1 by 2 is printed, it is 4 by 2" in satellite["size"].diagnosis
+    assert "the printed matrix is 1 by 2, but should be 4 by 2" in satellite["size"].diagnosis
 
 
 def test_a_unit_of_another_dimension_is_a_unit_error(satellite: dict[str, auditing.Judged]) -> None:
@@ -141,7 +141,7 @@ def test_a_unit_of_another_dimension_is_a_unit_error(satellite: dict[str, auditi
 def test_a_right_formula_with_impossible_dimensions_is_a_unit_error(satellite: dict[str, auditing.Judged]) -> None:
     found = satellite["no angle"]
     assert found.verdict == "unit error"
-    assert "right as numbers" in found.diagnosis
+    assert "numerically right" in found.diagnosis
     assert "[length], but" in found.diagnosis
 
 
@@ -215,9 +215,9 @@ def test_a_slip_that_is_carried_on_is_wrong_even_where_the_document_has_it_right
     found = judged(tmp_path, rows)
     assert [entry.verdict for entry in found.values()] == ["wrong", "confirmed", "misprint"]
     assert "right in second" in found["first"].diagnosis
-    assert "carried on into third" in found["first"].diagnosis
-    assert "The same slip is in third" in found["first"].diagnosis
-    assert "follows from first as printed, and nothing else is wrong" in found["third"].diagnosis
+    assert "propagates to third" in found["first"].diagnosis
+    assert "The same slip occurs in third" in found["first"].diagnosis
+    assert "follows from first as printed, and contains no other error" in found["third"].diagnosis
 
 
 @pytest.fixture(scope="module")
@@ -257,7 +257,7 @@ def test_matrices_and_what_is_made_of_them(free: dict[str, auditing.Judged], key
 
 def test_a_column_of_another_length_is_no_kernel(free: dict[str, auditing.Judged]) -> None:
     assert free["kernel, too short"].verdict == "misprint"
-    assert "columns of 2 are printed, they are of 3" in free["kernel, too short"].diagnosis
+    assert "the printed columns have 2 entries, but should have 3" in free["kernel, too short"].diagnosis
 
 
 @pytest.mark.parametrize(

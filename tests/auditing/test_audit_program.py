@@ -104,5 +104,5 @@ def test_a_wrong_exponent_and_a_missing_factor_are_found_together(tmp_path):
     rows = [row("1", "g/x1**3", "m*mu/r**2"), row("2", "-m*g*x1**2", "-mu*r**3")]
     found = judged(tmp_path, rows, HEAD)
     assert "`x1**3` should be `x1**2`" in found["1"].diagnosis
-    assert "lacks a factor: it should be `g*m/x1**2`" in found["1"].diagnosis
+    assert "should be `g*m/x1**2`: a factor is missing" in found["1"].diagnosis
     assert found["2"].derived

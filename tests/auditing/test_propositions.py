@@ -116,7 +116,7 @@ def test_each_condition_of_a_sentence_has_to_be_met_by_something(text: str, vacu
 
 def test_what_is_vacuous_names_the_condition_that_nothing_meets() -> None:
     found = answer("all(implies(m.n < 2, m.n == 1) and implies(m.n > 9, m.n == 3) for m in NUMBERS)")
-    assert found.reasons == ("no one of 3 numbers meets the condition m.n > 9",)
+    assert found.reasons == ("none of 3 numbers satisfies the condition m.n > 9",)
 
 
 @pytest.mark.parametrize(

@@ -89,12 +89,19 @@ def judged(document: Ledger) -> dict[str, list[Judged]]:
             diagnosis_id="Tanda `x` terbalik.",
         ),
         verdict(
-            document, "3", "wrong", diagnosis="It does not hold: 1.", why=f"It runs away. {NASTY}", spoiled_by=("2",)
+            document,
+            "3",
+            "wrong",
+            diagnosis="The statement does not hold: 1.",
+            why=f"It runs away. {NASTY}",
+            spoiled_by=("2",),
         ),
         verdict(document, "4", "confirmed"),
         verdict(document, "finding-1", "confirmed"),
-        verdict(document, "4 <", "wrong", diagnosis=f"It does not hold: {NASTY}.", derived=NASTY, role="result"),
-        verdict(document, "5", "undecided", diagnosis="It cannot be decided."),
+        verdict(
+            document, "4 <", "wrong", diagnosis=f"The statement does not hold: {NASTY}.", derived=NASTY, role="result"
+        ),
+        verdict(document, "5", "undecided", diagnosis="This cannot be decided."),
     ]
     return {"small": rows}
 
@@ -235,7 +242,7 @@ def test_many_conclusions_that_stand_are_named_and_not_quoted(
 ) -> None:
     rows = [*judged["small"], *(replace(judged["small"][3], item=f"9.{k}", verdict="unsound") for k in range(5))]
     stands = Review(document, rows, load("en")).summary[2]
-    assert stands.startswith("These stand: 4; 9.0, though not for the reason given; 9.1")
+    assert stands.startswith("These hold: 4; 9.0, though not for the reason given; 9.1")
 
 
 def test_a_conclusion_that_is_right_for_another_reason_stands_with_a_word_about_it(
@@ -309,7 +316,7 @@ def test_symbols_keep_their_case(clause: str, said: str) -> None:
 
 def test_diagnoses_are_said_in_both_languages() -> None:
     fault = sentences.joined([sentences.say("carried_on", ["1", "2"]), "", sentences.say("same_slip", ["3"])])
-    assert fault == "The error is carried on into 1 and 2. The same slip is in 3."
+    assert fault == "The error propagates to 1 and 2. The same slip occurs in 3."
     assert fault.indonesian == "Kekeliruan ini terbawa ke 1 dan 2. Kekeliruan yang sama ada di 3."
     assert sentences.stated(sentences.say("denied"), "{x}").indonesian == "Tidak benar demikian: {x}."
     assert sentence("x is measured") == sentences.in_indonesian("x is measured.")

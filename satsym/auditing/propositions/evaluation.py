@@ -160,9 +160,9 @@ class Evaluation:
             return Answer(None, open_.reasons, members=total)
         idle = frozenset.intersection(*(answer.idle for answer in answers)) if answers else frozenset({_text(node)})
         idle = idle if universal else frozenset()
-        said = f"{'so' if universal else 'not so'} in all of {total} {of}" if total else "there is none"
+        said = f"{'true' if universal else 'false'} for all of {total} {of}" if total else "there is none"
         if idle and total:
-            said = f"no one of {total} {of} meets the condition {' or '.join(sorted(idle))}"
+            said = f"none of {total} {of} satisfies the condition {' or '.join(sorted(idle))}"
         if not idle and 0 < total <= _TOLD:
             evidence = {k: v for answer in answers for k, v in answer.evidence.items()}
             reasons = dict.fromkeys(reason for answer in answers for reason in answer.reasons)
