@@ -85,18 +85,19 @@ class Kind(str, Enum):
 
 @dataclass(frozen=True)
 class Competitors:
-    """The competitors of one kind.
+    """The competitors of one kind that a solution is compared with.
 
     Attributes
     ----------
     kind
-        Which.
+        The kind of these competitors.
     tried
-        How many were looked for: ``solved`` and ``unanswered`` together.
+        Number of searches: ``solved`` plus ``unanswered``.
     solved
-        How many led to an admissible motion that reaches the end; finding the solution itself again counts.
+        Number of searches that led to an admissible motion to the final state; finding the solution itself again
+        counts.
     cheapest
-        The lowest cost among these; NaN if there are none.
+        The lowest cost of these motions; NaN if there are none.
     """
 
     kind: Kind
@@ -112,14 +113,14 @@ class Competitors:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Evidence for an optimum that anyone can recompute from the initial costates.
+    """Evidence for an optimum, which anyone can recompute from the initial costates.
 
     Attributes
     ----------
     verdict
         The verdict.
     boundary_residual
-        Largest relative residual of the conditions at the end, after integrating from the initial costates.
+        Largest relative residual of the final conditions after integration from the initial costates.
     dynamics_defect
         Largest relative distance of the solver's trajectory from the integrated one.
     stationarity
@@ -127,20 +128,21 @@ class Certificate:
     hamiltonian_drift
         Largest change of H along the flow, relative; ``None`` where time is explicit.
     legendre_clebsch
-        Smallest eigenvalue of H_uu; for controls that switch that of its generalisation on singular arcs, NaN without.
+        Smallest eigenvalue of H_uu; for controls that switch, that of its generalisation on singular arcs (NaN without
+        such arcs).
     conjugate_time
-        The first one, or ``None``.
+        The first conjugate time, or ``None``.
     checks
         All measured conditions, with their limits.
     competitors
-        The competing solutions, kind by kind.
+        The competing solutions, by kind.
     not_checked
-        Kinds of competitors that the problem allows but that were not compared: not tried, none of them solved, or time
-        was up.
+        Kinds of competitors that the problem allows but that were not compared: they were not tried, none of them was
+        solved, or the time limit was reached.
     scope
         Whether the minimum is local or global.
     because
-        The theorem on which the verdict rests; without one, the first condition that was not shown.
+        The theorem on which the verdict rests or, where there is none, the first condition that could not be proved.
     """
 
     verdict: Verdict

@@ -49,20 +49,20 @@ class Variable:
     symbol
         Name used in instances, results and generated code (a Python identifier).
     latex
-        How it is typeset.
+        LaTeX of the symbol.
     unit
-        Unit of its numbers, as pint reads it; ``"1"`` where there is none.
+        Unit of the values, as pint reads it; ``"1"`` if there is none.
     meaning
-        What it is, in a few words.
+        Meaning of the quantity, in a few words.
     default
-        Value where an instance gives none (parameters only).
+        Value that is used if an instance gives none (parameters only).
     kind
-        ``"real"``, or ``"angle"`` where values a turn apart mean the same place.
+        ``"real"``, or ``"angle"`` if values that differ by a full turn mean the same.
     positive
-        Whether only positive values have a meaning. For a state this is its domain.
+        Whether only positive values have a meaning; for a state, this defines its domain.
     typical
-        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without it
-        of size one, where steep functions and roots may have no numbers.
+        Lower and upper end of the range of usual values, in the unit of the quantity. Random points for checks are
+        drawn from this range; without it, they are of order one, where roots and steep functions may not be defined.
     """
 
     symbol: str

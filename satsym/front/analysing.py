@@ -61,16 +61,14 @@ class _Said(ABC):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analysis(_Said):
-    """The analysis of a model: stability, controllability and observability, and the orbit.
-
-    ``analysis["stability"]`` is a part of it.
+    """The analysis of a model or of an orbit; ``analysis["stability"]`` is one of its parts.
 
     Attributes
     ----------
     given
-        What was analysed.
+        The instance or model that was analysed.
     linear, orbit
-        The linear analysis and that of the orbit, as plain data; one may be missing.
+        The linear analysis and the analysis of the orbit, as plain data; one of them may be ``None``.
     derivation
         The derivation of the model, if it is available.
     """
@@ -110,7 +108,7 @@ class Regulator(_Said):
     Attributes
     ----------
     given
-        What it was designed for.
+        The instance or model for which the feedback was designed.
     design
         The design, as plain data.
     """
@@ -144,17 +142,17 @@ class Regulator(_Said):
 @single_threaded()
 @in_one_line
 def analyse(subject: Subject) -> Analysis:
-    """Analyse a model near its reference or an equilibrium, or an orbit about a centre.
+    """Analyse a model near its reference or near an equilibrium, or an orbit about a centre.
 
     Parameters
     ----------
     subject
-        An instance, or a model with its default parameters: by name or path, or as they are in Python.
+        An instance, or a model with its default parameters; as a Python object, a name or a path.
 
     Raises
     ------
     BadInput
-        If there is nothing to analyse, with one line that says why.
+        If the subject cannot be analysed, with one line that gives the reason.
     """
     given, derivation = _given(subject)
     return Analysis(given, *subjects.examined(given), derivation)
@@ -163,7 +161,7 @@ def analyse(subject: Subject) -> Analysis:
 @single_threaded()
 @in_one_line
 def lqr(subject: Subject) -> Regulator:
-    """Find the linear feedback of minimum cost.
+    """Design the linear feedback of minimum cost.
 
     Parameters
     ----------
@@ -173,7 +171,7 @@ def lqr(subject: Subject) -> Regulator:
     Raises
     ------
     BadInput
-        If there is no such feedback, with one line that says why.
+        If there is no such feedback, with one line that gives the reason.
     """
     from satsym.analysis.regulator.feedback import designed
 

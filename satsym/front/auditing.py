@@ -28,9 +28,9 @@ class Audit:
     Attributes
     ----------
     ledgers
-        What they print.
+        The ledgers of the documents.
     judged
-        Key of a document -> its rows with their verdicts.
+        Key of a document -> its items with their verdicts.
     """
 
     ledgers: tuple[Ledger, ...]
@@ -90,16 +90,16 @@ def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) 
     Parameters
     ----------
     ledgers
-        Documents that come with satsym, or paths of ledgers; by default all documents.
+        Keys of documents that come with satsym, or paths of ledgers; by default all documents.
     items
-        Judge these items alone.
+        Items to check; by default all.
     fresh
-        Compute anew, whatever is in the cache.
+        Whether to recompute everything, without the cache.
 
     Raises
     ------
     BadInput
-        If there is no such document or item, or a ledger cannot be used.
+        If there is no such document or item, or if a ledger cannot be used.
     """
     paths = [auditing.locate(str(name)) for name in ledgers] if ledgers else auditing.shipped()
     read = tuple(auditing.read(path) for path in paths)
@@ -170,23 +170,23 @@ def _said(answer: Answer) -> str:
 
 @in_one_line
 def check(formula: str, model: str, let: str | Sequence[str] | Mapping[str, str] = (), free: bool = False) -> Checked:
-    """Say whether a printed formula is right, and if not, what is wrong.
+    """Check whether a printed formula is right, and say what is wrong with it.
 
     Parameters
     ----------
     formula
-        LaTeX, or plain notation; nothing of it is evaluated.
+        The formula in LaTeX or plain notation; its text is never evaluated.
     model
-        A shipped model, or ``"DIR/NAME"`` after ``satsym derive --out DIR``.
+        Name of a shipped model, or ``"DIR/NAME"`` after ``satsym derive --out DIR``.
     let
-        What printed letters mean: ``{"n": "omega"}``, or ``"n=omega"``.
+        Meanings of printed letters: ``{"n": "omega"}``, or ``"n=omega"``.
     free
-        Whether the uncontrolled motion is meant.
+        Whether the formula describes the uncontrolled motion.
 
     Raises
     ------
     BadInput
-        If the formula cannot be read, with the place, or there is no such model or name.
+        If the formula cannot be read (the message names the place), or if there is no such model or name.
     """
     told = [f"{printed}={ours}" for printed, ours in let.items()] if isinstance(let, Mapping) else let
     found = check_in(formula, model, Path(), [told] if isinstance(told, str) else list(told), free)

@@ -21,22 +21,22 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
     """One quantity, or several, over time.
 
     ``x(t)`` is the value at a time, or at an array of times; ``x[0, -1]`` and ``numpy.asarray(x)`` are values at the
-    nodes; ``x["r"]`` is the quantity of that name, again over time. Arithmetic gives plain arrays.
+    nodes; ``x["r"]`` is the component with that name, again as a curve. Arithmetic gives plain arrays.
 
     Parameters
     ----------
     what
-        How messages call it.
+        Name of the curve in messages.
     times
         The nodes, shape (N+1,).
     values
-        There, shape (N+1,) or (k, N+1).
+        Values at the nodes, shape (N+1,) or (k, N+1).
     names
-        Of several quantities.
+        Names of the components, if there are several.
     between
-        Values at times (M,) within the nodes, shape (M,) or (k, M).
+        Function of times, shape (M,), that returns values of shape (M,) or (k, M).
     absent
-        Why there are none, where that is so.
+        The reason why there are no values, if there are none.
     """
 
     def __init__(

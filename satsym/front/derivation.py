@@ -34,14 +34,14 @@ KEPT = 32
 
 @dataclass(frozen=True)
 class Equation:
-    """A derived equation; shown as a formula in notebooks.
+    """A derived equation, which notebooks display as a formula.
 
     Attributes
     ----------
     address
         ``model:step.equation``.
     lhs, rhs
-        Of sympy; the right-hand side may be a matrix.
+        The two sides, as sympy expressions; the right-hand side may be a matrix.
     latex
         The equation in the notation of its derivation.
     """
@@ -65,13 +65,13 @@ class Derivation:
     Attributes
     ----------
     subject
-        What it follows from, as it was declared.
+        The problem or model from which it is derived.
     derived
-        The steps.
+        The steps of the derivation.
     source
-        Name of the file that states it; what it would be called where there is none.
+        Name of the file that defines the problem, or the name that such a file would have.
     stating
-        The files that state it, with digests of their content.
+        The files that define the problem, with digests of their contents.
     """
 
     subject: Problem | Model
@@ -160,9 +160,9 @@ class Derivation:
         Parameters
         ----------
         lang
-            One of :func:`satsym.report.texts.languages`.
+            Language of the document, one of :func:`satsym.report.texts.languages`.
         fragment
-            Without a preamble, to be included.
+            Whether to leave out the preamble, for inclusion in another document.
         """
         from satsym.report.latex import document
 
@@ -241,15 +241,15 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
     Parameters
     ----------
     subject
-        A problem or model; a shipped name; or ``"FILE.py"``, with ``:NAME`` where that file states several. A file is
-        Python and is executed.
+        A problem or model; the name of a shipped one; or ``"FILE.py"``, followed by ``:NAME`` if the file defines
+        several. The file is Python and is executed.
     convention
-        ``"minimum"`` or ``"maximum"``; by default as the problem says.
+        ``"minimum"`` or ``"maximum"``; by default the convention of the problem.
 
     Raises
     ------
     BadInput
-        If there is no such thing, or it cannot be derived from: with one line that says why.
+        If there is no such problem, or nothing can be derived from it, with one line that gives the reason.
     """
     from satsym.report import artefacts
     from satsym.symbolic import Model, Problem, loader

@@ -35,26 +35,26 @@ def load(name_or_path: str | Path) -> Instance:
     Parameters
     ----------
     name_or_path
-        A shipped name (`satsym instances` lists them), or the path of a TOML file.
+        Name of a shipped instance (`satsym instances` lists them), or path of a TOML file.
 
     Raises
     ------
     BadInput
-        With one line, ``FILE: KEY: what is wrong; what to do``.
+        If the instance cannot be used. The message is one line, ``FILE: KEY: what is wrong; what to do``.
     """
     return Instance.of_written(instances.read(name_or_path))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Instance:
-    """One case of a model: made by :func:`load` or :meth:`of`, and never changed.
+    """A problem with its numbers; made by :func:`load` or :meth:`of`, and immutable.
 
     Parameters
     ----------
     written
         The tables of the instance file.
     case
-        The same, checked against the model, as the solvers use it.
+        The same data, checked against the model, in the form that the solvers use.
     """
 
     written: Written
@@ -92,17 +92,17 @@ class Instance:
         initial, final, parameters, control
             The tables of these names.
         tf, t0, tf_guess, t0_guess
-            The table [time]: final and initial time, or ``"free"`` where one is to be found; where to look for it.
+            The table [time]: final and initial time, or ``"free"``; initial guesses of free times.
         name
-            What it is called in results; by default as its model.
+            Name of the instance in results; by default that of the model.
         more
-            The other keys of an instance file: ``title``, ``solver``, ``lqr``, ``guess``, ``classical``, ``limits``,
-            ``switching``, ``orbit``.
+            Other tables and keys of an instance file: ``title``, ``solver``, ``lqr``, ``guess``, ``classical``,
+            ``limits``, ``switching``, ``orbit``.
 
         Raises
         ------
         BadInput
-            With the same line as for an instance file.
+            If the instance cannot be used, with the same message as for an instance file.
 
         Examples
         --------
@@ -126,8 +126,8 @@ class Instance:
         Parameters
         ----------
         changes
-            As for :meth:`of`. Tables are merged, name by name; ``None`` takes away what was there, such as in
-            ``with_(final={"theta": None})``. ``model`` may be changed, too.
+            As for :meth:`of`. Tables are merged, name by name; ``None`` removes an entry, such as in
+            ``with_(final={"theta": None})``. ``model`` may also be changed.
 
         Raises
         ------

@@ -57,21 +57,21 @@ def proved(case: Case, find: Callable[[], solution.Solution], digits: int) -> Pr
 @single_threaded()
 @in_one_line
 def prove(instance: Instance | str | Path, digits: int = 20, **options: Any) -> Proof:
-    """Solve an instance and prove that the answer is a strict local minimum.
+    """Solve an instance and prove that the solution is a strict local minimum.
 
     Parameters
     ----------
     instance
-        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+        An instance, or the name or path of one, which is then loaded.
     digits
         Significant digits of the enclosures, from 6 to 60.
     options
-        Of the table [solver], instead of the instance's.
+        Options of the table [solver], which override those of the instance.
 
     Returns
     -------
     Proof
-        Also where nothing is proved: ``status`` and ``reason`` say why.
+        The proof; if nothing is proved, ``status`` and ``reason`` say why.
 
     Raises
     ------

@@ -177,7 +177,7 @@ class Result(ABC, Generic[Found]):
     def save(self, folder: str | Path, *, plot: bool = False) -> list[Path]:
         """Write the files of ``--out`` (and ``--plot``) and the instance into a folder; return their paths.
 
-        A result that the folder holds already is replaced, whole or not at all.
+        An earlier result in the folder is replaced, either completely or not at all.
 
         Raises
         ------
@@ -195,14 +195,15 @@ class Result(ABC, Generic[Found]):
         Parameters
         ----------
         folder
-            Where.
+            Folder of the result.
         instance
-            The instance of the result; by default the one that was saved with it, or the shipped one of its name.
+            The instance of the result; by default the instance that was saved with it, or the shipped instance of the
+            same name.
 
         Raises
         ------
         BadInput
-            If there is no complete result of this kind, or if it belongs to another instance.
+            If the folder contains no complete result of this kind, or if the result belongs to another instance.
         """
         case, found = saved.read(Path(folder), instance)
         if isinstance(found, Solution) != (cls._command == "solve"):

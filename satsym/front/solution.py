@@ -125,21 +125,22 @@ class Solution(Result[solution.Solution]):
 @single_threaded()
 @in_one_line
 def solve(instance: Instance | str | Path, progress: Progress | None = None, **options: Any) -> Solution:
-    """Solve an instance and certify the answer.
+    """Solve an instance and certify the solution.
 
     Parameters
     ----------
     instance
-        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+        An instance, or the name or path of one, which is then loaded.
     progress
         Called after each iteration.
     options
-        Of the table [solver], instead of the instance's: ``method``, ``steps``, ``tolerance``, ``max_seconds``, ...
+        Options of the table [solver], which override those of the instance: ``method``, ``steps``, ``tolerance``,
+        ``max_seconds``, ...
 
     Returns
     -------
     Solution
-        Also where there is no answer: ``status`` and ``message`` say why.
+        The solution; if there is none, ``status`` and ``message`` give the reason.
 
     Raises
     ------

@@ -38,9 +38,9 @@ class Study:
     Parameters
     ----------
     folder
-        Where its table is.
+        Folder that contains the table.
     summary
-        What ``satsym study --json`` prints.
+        The data that ``satsym study --json`` prints.
     """
 
     folder: Path
@@ -88,36 +88,38 @@ def study(
     executor: Callable[[], Executor] | None = None,
     progress: Watch = lambda _: None,
 ) -> Study:
-    """Solve, simulate or regulate an instance for many values of some of its numbers.
+    """Solve or simulate an instance, or design regulators for it, with many values of some of its numbers.
 
     Parameters
     ----------
     instance
-        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+        An instance, or the name or path of one, which is then loaded.
     folder
-        Where the table goes; a study that is there must be this one, and only what is missing is computed.
+        Output folder. If it contains a study, this must be the same study, and only missing cases are computed.
     vary
-        A grid: by key a low and a high value and their number, ``(0.9, 1.1, 50)``, or ``"log:1:100:20"``.
+        A grid: for each key, the lowest value, the highest value and their number, ``(0.9, 1.1, 50)``, or a text such
+        as ``"log:1:100:20"``.
     normal, uniform
-        Distributions to draw `sample` rows from: by key mean and standard deviation, or both ends.
+        Distributions from which `sample` cases are drawn: for each key, the mean and the standard deviation, or the two
+        ends of the interval.
     sample, method, seed, command, certificate, feedback, trajectories
-        As in the table ``[study]``, instead of what that says; see ``docs/instances.md``.
+        As in the table ``[study]`` of the instance, which they override; see ``docs/instances.md``.
     table
-        What its table is written as: ``"csv"``, the default, or ``"parquet"``, which needs pyarrow (extra ``table``).
+        Format of the table: ``"csv"``, the default, or ``"parquet"``, which needs pyarrow (extra ``table``).
     resume
-        Whether a study may be there.
+        Whether a study in the output folder is continued.
     workers
-        Processes; by default one a processor that this process may use.
+        Number of processes; by default one for each processor that this process may use.
     executor
-        Makes something of the shape of ``concurrent.futures.Executor`` that computes instead of these processes;
-        `workers` calls are given to it at a time.
+        Function that returns an object like ``concurrent.futures.Executor``, which computes in place of these
+        processes; at most `workers` calls are submitted to it at a time.
     progress
-        Called after each chunk with how far the study is.
+        Called after each chunk with the progress of the study.
 
     Raises
     ------
     BadInput
-        If it cannot be carried out, with one line that says what, where and what to do.
+        If the study cannot be carried out, with one line that says what, where and what to do.
 
     Examples
     --------

@@ -57,20 +57,20 @@ class Trajectory(Result[Simulation]):
 @single_threaded()
 @in_one_line
 def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Trajectory:
-    """Follow the motion of an instance under a control law.
+    """Simulate the motion of an instance under a control law.
 
     Parameters
     ----------
     instance
-        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+        An instance, or the name or path of one, which is then loaded.
     feedback
-        ``"none"``, ``"lqr"``, ``"classical"``, ``"switching"`` or ``"pulses"``; by default classical where the instance
-        states such a law, else none.
+        ``"none"``, ``"lqr"``, ``"classical"``, ``"switching"`` or ``"pulses"``; by default classical if the instance
+    specifies such a law, otherwise none.
 
     Raises
     ------
     BadInput
-        If the instance cannot be used, or does not suit the feedback.
+        If the instance cannot be used, or not with this feedback.
     """
     from satsym.analysis.regulator.feedback import simulate as simulated
 
@@ -85,11 +85,11 @@ def export(result: Solution | Trajectory, kind: str, path: str | Path | None = N
     Parameters
     ----------
     result
-        Of an instance with a table [orbit].
+        Solution or simulated motion of an instance with a table [orbit].
     kind
         ``"oem"`` (orbit ephemeris message of CCSDS), ``"czml"`` (Cesium), ``"stk"`` (ephemeris of STK) or ``"csv"``.
     path
-        Also write it there; a file of this name is replaced.
+        File to which the text is also written; an existing file is replaced.
 
     Returns
     -------
@@ -99,8 +99,8 @@ def export(result: Solution | Trajectory, kind: str, path: str | Path | None = N
     Raises
     ------
     BadInput
-        If it has no usable table [orbit], or the library that writes the format is not installed: with one line that
-        says what, where and what to do.
+        If the instance has no usable table [orbit], or if the library that writes the format is not installed, with one
+        line that says what, where and what to do.
 
     Examples
     --------

@@ -167,7 +167,9 @@ def waiting(statement: Statement) -> str:
     still = kernel.dynamics(constant(0), there, [constant(0)] * m, p)
     if not (rate > 0 and end.is_zero() and all(value(v).is_zero() for v in still) and _linear(statement)):
         return ""
-    return "the motion is linear, time alone is the cost, and the end is an equilibrium of the uncontrolled motion"
+    return (
+        "the motion is linear, time alone is the cost, and the final state is an equilibrium of the uncontrolled motion"
+    )
 
 
 def _linear(statement: Statement) -> bool:

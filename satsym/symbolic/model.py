@@ -105,7 +105,7 @@ class Model:
     name
         Name of the model where it is generated without a cost.
     title
-        One line for people.
+        Title of one line.
     states, controls, parameters
         Declared variables; arrays everywhere follow this order.
     definitions
@@ -277,20 +277,20 @@ class Particle(Model):
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """An optimal control problem: a model, what it costs, and the kind of control set.
+    """An optimal control problem: a model, a cost, and the kind of control set.
 
     Parameters
     ----------
     name
-        Name in instances, and of the generated files.
+        Name of the problem in instances, and of the generated files.
     title
-        One line for people.
+        Title of one line.
     model
         The motion.
     running_cost
-        Integrand L(t, x, u, p) (Lagrange term); zero where it is left out.
+        Integrand L(t, x, u, p) (Lagrange term); zero by default.
     terminal_cost
-        S(x, t, p), taken at the final time (Mayer term).
+        Function S(x, t, p), evaluated at the final time (Mayer term).
     terminal_constraints
         Expressions psi(x, t, p) that vanish at the final time.
     terminal_inequalities
@@ -298,23 +298,22 @@ class Problem:
     path_constraints
         Expressions g(x, u, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
     interior
-        Points on the way by name, in order, each with expressions N(x, t, p) that vanish there: ``{"flyby": (x - a,
-        y - b)}``. The times at which they are passed are free.
+        Waypoints by name, in their order, each with the expressions N(x, t, p) that vanish there: ``{"flyby": (x - a, y
+        - b)}``. The times at which they are passed are free.
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
     control_sets
-        Instead of it, the sets whose product the control set is, by name: ``{"thrust": Ball("ux", "uy"), "steering":
-        Angle("beta")}``. Each control is in one of them.
+        Used in place of `control_set`: the sets whose product is the control set, by name: ``{"thrust": Ball("ux",
+        "uy"), "steering": Angle("beta")}``. Each control is in one of them.
     convention
-        In which of the two conventions of Pontryagin's principle the derivation is printed: ``"minimum"`` or
-        ``"maximum"``. The controls are the same, the costates change their sign; kernels always have those of
-        the minimum convention.
+        The convention of Pontryagin's principle in the typeset derivation: ``"minimum"`` or ``"maximum"``. The controls
+        are the same in both; the costates differ in sign, and kernels always use those of the minimum convention.
     maximise
-        Whether the objective, the integral of `running_cost` plus `terminal_cost`, is to be as large as it can be.
-        What is derived and generated minimises its negative, whose costates they are; reports state the objective.
+        Whether the objective, the integral of `running_cost` plus `terminal_cost`, is maximised. The derivation and the
+        kernels minimise its negative, to which the costates belong; reports show the objective.
     unit
-        Of the objective, such as ``"km"``; refused where its terms come out in another one.
+        Unit of the objective, such as ``"km"``; a unit that does not agree with the terms of the objective is refused.
     """
 
     name: str

@@ -58,16 +58,17 @@ class Answer:
 class Repeated:
     """An instance to be solved many times, with other initial states or parameters.
 
-    Making it solves the instance once, from a cold start. From then on it starts from the last answer, or from a
-    straight line, and only if neither leads to an extremal from a cold start. With numba (extra ``fast``) that is
-    shooting with compiled functions, and compiling takes seconds; without it collocation, which keeps scales and mesh.
+    When the object is made, the instance is solved once, from a cold start. Later solutions start from the previous
+    one, then from a straight line, and only if neither leads to an extremal from a cold start. With numba (extra
+    ``fast``), the method is shooting with compiled functions, and compilation takes some seconds; without numba, it is
+    collocation, which keeps scales and mesh.
 
     Parameters
     ----------
     instance
-        What is solved. Given final states, the final time and bounds stay as they are.
+        The instance. Its final conditions, final time and bounds stay fixed.
     compiled
-        Whether to compile; by default wherever numba is installed.
+        Whether functions are compiled; by default if numba is installed.
 
     Attributes
     ----------
@@ -77,8 +78,8 @@ class Repeated:
     Raises
     ------
     BadInput
-        If the model has no cost, its controls switch, angles are to count modulo a turn, final states have ranges, or
-        numba is asked for and not installed.
+        If the model has no cost or controls that switch, if angles count modulo a full turn or final states have
+        ranges, or if numba is requested but not installed.
 
     Examples
     --------
@@ -119,27 +120,27 @@ class Repeated:
     def solve(
         self, initial: Sequence[float] | None = None, parameters: Sequence[float] | None = None, cold: bool = False
     ) -> Answer:
-        """Solve once more.
+        """Solve the instance with other initial states or parameters.
 
         Parameters
         ----------
         initial, parameters
-            In the order and units of the model; by default those of the instance.
+            Values in the order and the units of the model; by default those of the instance.
         cold
-            Whether to start cold instead of from the last answer.
+            Whether to use a cold start instead of the last solution.
 
         Returns
         -------
         Answer
-            The extremal near the last answer; or, from a straight line or a cold start, near a strict local minimum
-            of the problem without bounds. Only :func:`certify` tells whether it is a minimum within them.
+            The extremal near the last solution or, from a straight line or a cold start, near a strict local minimum of
+            the problem without bounds. Only :func:`certify` determines whether it is a minimum of the bounded problem.
 
         Raises
         ------
         ValueError
-            If there are not as many numbers as states or parameters.
+            If the number of values is not that of the states or parameters.
         BadInput
-            If one of them is not finite or outside its domain.
+            If a value is not finite or lies outside its domain.
         """
         spec = self._case.model.spec
         case = replace(
@@ -153,7 +154,7 @@ class Repeated:
         return self.answer
 
     def branched(self) -> Repeated:
-        """Return a copy that starts from the last answer of this one and is independent from then on."""
+        """Return an independent copy, which starts from the last solution of this object."""
         other = copy(self)
         other._means = copy(self._means)
         return other
@@ -176,7 +177,7 @@ class Repeated:
             return without_numbers(case, error), Origin.COLD_START
 
     def solution(self, answer: Answer) -> Solution:
-        """Return a full solution for an answer, with switching times; this takes as long as solving it once.
+        """Return a complete solution with switching times; this takes as long as solving the instance once.
 
         Raises
         ------
