@@ -1,8 +1,8 @@
 """The pitch axis of a satellite with a reaction wheel: a motor spins the wheel up and thereby turns the body back.
 
-The pitch axis is normal to the orbit. The wheel turns about it in the opposite sense, as the orbital motion does. Its
+The pitch axis is normal to the orbit. The wheel and the orbital motion rotate about it in the negative sense. Its
 speed is relative to the body, as a tachometer measures it. I_y is the moment of inertia of the whole satellite, wheel
-included. The numbers are those of the paper that the ledger lapan_pitch is about; it prints none for the motor.
+included. The numbers are those of the paper audited in lapan_pitch, which gives none for the motor.
 """
 
 from dataclasses import replace

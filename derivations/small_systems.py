@@ -1,7 +1,7 @@
 """Small systems without units, as in textbook examples; one depends on time, and two have singular arcs.
 
-The first three are examples 2.8 (both systems) and 2.9, the fourth is example 2.7 of the thesis that the ledger
-uny_thesis is about.
+The first three are examples 2.8 (both systems) and 2.9 of the thesis audited in uny_thesis, the fourth is its example
+2.7.
 """
 
 from sympy import cos, sin

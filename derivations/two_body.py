@@ -1,6 +1,7 @@
 """A body attracted by a fixed centre, in Cartesian coordinates along inertial axes, with thrust in any direction.
 
-Everything is per unit mass. The centre is at rest: the mass of the body is negligible, or mu is that of both.
+Everything is per unit mass. The centre is at rest: the mass of the body is negligible, or mu is the sum for both
+bodies.
 """
 
 from sympy import Matrix, eye

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
+Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: 59105ef0d2b8d23358d7ed6254fdd45df89c9c5c3a230aedc7627de120f7d88d
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: cae828e8701251fd5c3d21670777ee2aca4d25f46e110ca3ddc93bab5b122a36
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py fd6ab4cb3b8029ac5e392696d0b32c0e
-Digest: a7a1687adf8cf608d6d36817edc80591df4fe2209aa21767586d0991585aad4d
+Source: ../derivations/examples/bryson_denham.py 47a4432d6ef6a5b62366746a5836594d
+Digest: ff8c4def776254079bfd928da923392bc8c8f3155734011d7949561bcec9b3c2
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py fd6ab4cb3b8029ac5e392696d0b32c0e
-Digest: 31505f9468b1e287f7a548818ef353564c19a4755518b58fc22b9e6eb77e99e7
+Source: ../derivations/examples/bryson_denham.py 47a4432d6ef6a5b62366746a5836594d
+Digest: 6dfa98a5bd90bb95e07c9d3a688cfe9647b399aa7ecd7729bb9c053daa886954
 """
 
 import math

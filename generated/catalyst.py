@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Source: ../derivations/examples/catalyst.py 7205cb93a16d2f88c063f0909a6ed28b
-Digest: 483d2165de1be4ced163624de2abe8555bf600e3f243b3f95dc12c469970bc1c
+Source: ../derivations/examples/catalyst.py 5c2c72162e14a8f86a0fb869f41db4ed
+Digest: 25ad297650433465330e9ab8427c4fee33b966aecabcb61ba52f236d77c8aaca
 """
 
 import math

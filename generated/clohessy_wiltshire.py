@@ -3,8 +3,8 @@
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: 7db3a1521621635b29f18a5585abb355ad370f2eb7e688e4ab8300f0bed9b5e9
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: 57b5e1c995c4893077ed83b50731dcb1749a45c737ce2a7f75b19d7f3812e3b5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 4b840e53263034ad26f7a6fcb93cbd6aea6b54f55317f8a4a8db644c5c9d5aa7
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: f73df1658cd664753bee613a58332efa5f4dd53df3c1fcd997e74a85c77a46b7
 """
 
 import math

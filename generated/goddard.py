@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py b8918e8e54cffa6d29ff2f13e5e0fae3
-Digest: 996947d1143282cd7562bf96f19755580e4a2bba37681451061f536fa5db009f
+Source: ../derivations/examples/goddard.py cdc26c96daa97e9c68e9401441d4377f
+Digest: 485b52f1f4b6dd2e53f06105740cebd49af799e7570d45126be5c890166f00cf
 """
 
 import math

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/inspection.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/inspection.py
-Source: ../derivations/examples/inspection.py ea44ba41bc01ebbda8bec5ed189f09d4
+Source: ../derivations/examples/inspection.py ba3a62cd9ac7fd6d92bf3bb30bc2d1d5
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: 1cc6587526eb6ef9636ab23ff4642273a8e777ba896a3173e9d6c9fa93434154
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: 1d36ba1dad4495864ee7f05b867a8a689d0f8396be100bac6d3519e3014ab85c
 """
 
 import math

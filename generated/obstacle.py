@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 138a2c3cc2febd7476df74f504ecbb53
-Digest: 1ee497c1a4350259137da389710bb1a2573721c2acd513a17242f936fb4debd5
+Source: ../derivations/examples/obstacle.py e070ab0fce25a11a521eadd73bdc102d
+Digest: b7d796c1584af482203301959acca24391292198b887b20e15170a3eb86f9333
 """
 
 import math
@@ -17,20 +17,20 @@ MODEL = {
     'title': 'Minimum-effort path around two circular obstacles',
     'source': 'derivations/examples/obstacle.py',
     'states': (
-        {'symbol': 'x', 'latex': 'x', 'meaning': 'position in the direction of the end'},
+        {'symbol': 'x', 'latex': 'x', 'meaning': 'position in the direction of the target'},
         {'symbol': 'y', 'latex': 'y', 'meaning': 'position across that direction'},
-        {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'velocity in the direction of the end'},
+        {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'velocity in the direction of the target'},
         {'symbol': 'vy', 'latex': 'v_y', 'meaning': 'velocity across that direction'},
     ),
     'controls': (
-        {'symbol': 'ux', 'latex': 'u_x', 'meaning': 'acceleration in the direction of the end'},
+        {'symbol': 'ux', 'latex': 'u_x', 'meaning': 'acceleration in the direction of the target'},
         {'symbol': 'uy', 'latex': 'u_y', 'meaning': 'acceleration across that direction'},
     ),
     'parameters': (
-        {'symbol': 'x_1', 'latex': 'x_1', 'meaning': 'centre of the first disc, in the direction of the end', 'default': 0.3},
+        {'symbol': 'x_1', 'latex': 'x_1', 'meaning': 'centre of the first disc, in the direction of the target', 'default': 0.3},
         {'symbol': 'y_1', 'latex': 'y_1', 'meaning': 'centre of the first disc, across that direction', 'default': -0.05},
         {'symbol': 'radius_1', 'latex': 'R_1', 'meaning': 'radius of the first disc', 'default': 0.2, 'positive': True},
-        {'symbol': 'x_2', 'latex': 'x_2', 'meaning': 'centre of the second disc, in the direction of the end', 'default': 0.7},
+        {'symbol': 'x_2', 'latex': 'x_2', 'meaning': 'centre of the second disc, in the direction of the target', 'default': 0.7},
         {'symbol': 'y_2', 'latex': 'y_2', 'meaning': 'centre of the second disc, across that direction', 'default': 0.1},
         {'symbol': 'radius_2', 'latex': 'R_2', 'meaning': 'radius of the second disc', 'default': 0.15, 'positive': True},
     ),

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: 6a3c22b0c4392699bdcbb4dfcb3b5519fcea30e1157e64e1cf546a5b6d5705b3
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: 5f4c1d9718068d11a9154942a18335ff2da73489e2bbe6a63eec28f0927e4d0a
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: 9c116a6b2801294d3bf4464482d70cc169ad211a781998ac4497ec715aee8b2a
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: d3151d3a236b87d40b6287109e7dc83f7b1a2a8e31e9fbe5aae5e4a277a91734
 """
 
 import math

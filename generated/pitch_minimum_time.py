@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: c1ee0bd7eac0a59ae4bff21fdd79b49086c770fea6b15207b7261df8beb5c158
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: a83bd9f232de62119a9dabb5073184db8f028bb3638c8c5302b0af5696e9fb45
 """
 
 import math

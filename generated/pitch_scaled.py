@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: cc1cffdae10e964857abeb41145204924a6c309b2951737a678eec4882008e01
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: 89aec6303a6e463108e5e9332ec678ddca32e13c8ca58af077bb7f82d99cc920
 """
 
 import math

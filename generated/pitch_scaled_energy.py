@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: 151968ef7d97b6a88ebc823a463fdaf046b4a9304d58ff91dc12d8ebc939f507
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: f5d1d3b4aacb3f42c4f50487269cccf3d1a8f10285641d03268d27a67dbda2fe
 """
 
 import math

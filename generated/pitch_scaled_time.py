@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: a1fbae73f0c97ad0664b4a16545988eba60d1e1282d3f0b023ddd2246e4df149
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: 3a591f123bfef731a82874e0c152a28ccfe61ec9885f0ac9a6c3c3d1ed2060c8
 """
 
 import math

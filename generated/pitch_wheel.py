@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py 4d17e965233f4b8003b60fcf5294a160
-Digest: 5210e6362ba8545f175acdce00ea494e3b636c5972f610d7690017a122ab83d9
+Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
+Digest: eefd847215df98a5beea90cad05d57f0c868c6eec31da8711bb86bb0e9a7d5e6
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: d8028021396f53c2417d2481e1f79b1ca94005188632854c03ade907d2c2e79c
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: 14ed703792ec89add5671c8b6773d9f4c3e8872f9b41620b780c7296a5d0e180
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: ac67baa93f55b5f07eba4eb2a55ae3e1e7bb59daa3e87b917a4f1086c73a07cf
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: e17cce3470139a5711957d937572d8398100e8b2448670eb46e983452230b69a
 """
 
 import math

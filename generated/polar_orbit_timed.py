@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: 77868c4d6f5f6e30bbd52aaafe4ad5be3360209c5d21bc1b21efda23f0a1749c
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: 9c3aa9caaa97c81643a24284f695fb53a686908bf2e84f95e425ed6c1196d4d9
 """
 
 import math

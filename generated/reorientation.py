@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py d90e8082e5ae814a8851ae1031de8cda
-Digest: e1728f609a52fa41845b2e9aafd634c22fd876230a1cf5fd42d7e605c6f68009
+Source: ../derivations/examples/reorientation.py 1b2c8e35c07e7967e05f96d213b0230d
+Digest: 369c746fde4ca93cd6a17b8f88c4c761e1ceac7728fd1b9cac8601157c1d1c2b
 """
 
 import math

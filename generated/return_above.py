@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
+Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: ec7859fe1623935c379b71fe89b5bbb031f225b9d21af13b31027ba7cfa01b6a
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: e8dbdb6f241f24cd1930d41c29c8c09053701fad188005c41e18a611ba08ce74
 """
 
 import math

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py 05baec64b1b9b348ff8cdad8be1c14aa
+Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py e7861d51fbb8d815c35d0dc0f1734fb9
-Digest: ec13c0f5ba35c1d91f193960450dc60661fe01989718ac6947e1e38f4a4437a6
+Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
+Digest: 97ee16730ca77e94f4e83acaaa88d04361ca06678cebd2105d4eb8667a704a87
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: b7478a61bdb679ff2d9c11b33b53004af836a6ac42d66fea7d44c8e768069e92
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: de2110910a00432483007b299dfac761013f7343b32a5bc2fd3a64e723dec8a2
 """
 
 import math

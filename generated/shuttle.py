@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py f1c85d7a28dfb86483cb9609b4451a51
-Digest: 5ca7c0235981f06ec1fc61aee7606a32c68f7d1a56ba6dc8d455fe40179e02b3
+Source: ../derivations/examples/shuttle.py e39c764e6c798ad3b528b4ebccadd7c0
+Digest: fe0defb52e7acd9c34000c0ed095ac43c205e2b4637b78bd29bd350a98970f3d
 """
 
 import math

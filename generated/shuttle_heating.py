@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py f1c85d7a28dfb86483cb9609b4451a51
-Digest: 51e6d1d0a217cbd8e2fbc3841493858e438d0d3b77da8a76c6279ed5afc8d980
+Source: ../derivations/examples/shuttle.py e39c764e6c798ad3b528b4ebccadd7c0
+Digest: f11a935f79a9868b1b5c781545ab35ff973d696be459bb959bee82f8836df04e
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 5c50f34ca55e0b348a626295b4962e3f4de38376d80455cb77155a203d2dfa77
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: 27f9059863cfac2c76e2b9941c1d6c2ebf345b2140dab2139258c9d269745089
 """
 
 import math

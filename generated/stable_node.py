@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 36b7b30ff6a6ed0d2611f11d11f6881140d8d3fcace6e32dc3584254405bff83
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: e33aa05927ed9fd95b1903e989436bf4e02aa44f65dfaa9e6b2079ab28025ab0
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/three_bodies.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/three_bodies.py
-Source: ../derivations/examples/three_bodies.py 65502d1d3c5cd0bec2a287213e5006e5
-Digest: e3e926ee4d265012f6dc88482a0e9dfd3f9191cff99a01d8127b69a69830ff01
+Source: ../derivations/examples/three_bodies.py 1e4b58f326963e49ddc52b060de09152
+Digest: d100ee4e561f1e4a6c2f0995f07f4a0c70feb22b86444b1acc0725eca32f41cd
 """
 
 import math
@@ -27,8 +27,8 @@ MODEL = {
     'controls': (),
     'parameters': (
         {'symbol': 'n', 'latex': 'n', 'unit': 'rad/s', 'meaning': 'angular velocity of the two bodies', 'default': 1.0, 'positive': True},
-        {'symbol': 'R', 'latex': 'R', 'unit': 'km', 'meaning': 'distance of the two bodies', 'default': 1.0, 'positive': True},
-        {'symbol': 'mu', 'latex': '\\mu', 'meaning': 'mass of the second body over that of both', 'default': 0.01215, 'positive': True},
+        {'symbol': 'R', 'latex': 'R', 'unit': 'km', 'meaning': 'distance between the two bodies', 'default': 1.0, 'positive': True},
+        {'symbol': 'mu', 'latex': '\\mu', 'meaning': 'mass of the second body as a fraction of the total mass', 'default': 0.01215, 'positive': True},
     ),
     'control_set': None,
     'has_cost': False,

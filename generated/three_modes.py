@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 59d819b6265edc9f3736e92d1648896df716ad2983a6c85bb9d60f60fe081c5d
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: 520d94fddee6c549d1564b8a1438f0585df998b114b13061b8053603ed983bce
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 176c06ee81994fea9da62dddc93c65be48af7774103f7aeace11d388b4e20061
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: b9bdcf8861eae2a2e6bdffe55d91d91e5d313209cca4959899c82e12b4f3568a
 """
 
 import math

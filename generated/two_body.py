@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Source: ../derivations/two_body.py 84e5519644a5b6a43f8774f89886ecdb
-Digest: 9698dcf2a31e68f282278974112a9fbc6a31ce4d9953e79320bedfa00bff3047
+Source: ../derivations/two_body.py 4e9c21991e0fcd2aade0bb95e45d3ed5
+Digest: 7c7fb0a9ed4a8ef66a08e1f3066569e0d6e833a2fa51b9c3eccd084356be7c5c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 0697bf586aff4d9d4dd2b2af5c373b92
-Digest: 999ce164ba9928c335103709ffe0fb35002633a4eb73a455518185a805e7d0dc
+Source: ../derivations/small_systems.py 219aaf3a6733f2c363ccec0535df6f9d
+Digest: f67b4fb7da8abba2829364bfe5295b947eeb0222ebe99e436537e4219b0ccdc8
 """
 
 import math

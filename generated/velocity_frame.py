@@ -1,9 +1,9 @@
-"""The axes along the velocity on a Kepler orbit.
+"""Axes aligned with the velocity on a Kepler orbit.
 
 Written by satsym from derivations/examples/velocity_frame.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/velocity_frame.py
-Source: ../derivations/examples/velocity_frame.py 57bd014f9f298d94975820c10396093b
-Digest: 99b410ab733d92ff15cf3bdf4f16fa19e3efc93d035897d1488b52ad0036ea1d
+Source: ../derivations/examples/velocity_frame.py 6f72507b7ac47aa5afd4379d59d59d32
+Digest: bff58d99bfe254f6b5d75ce959f3faf9f2fb49b17604b34e84c1187941e31d6f
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'velocity_frame',
-    'title': 'The axes along the velocity on a Kepler orbit',
+    'title': 'Axes aligned with the velocity on a Kepler orbit',
     'source': 'derivations/examples/velocity_frame.py',
     'states': (
         {'symbol': 'f', 'latex': 'f', 'unit': 'rad', 'meaning': 'true anomaly', 'kind': 'angle'},

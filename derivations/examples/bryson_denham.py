@@ -1,8 +1,9 @@
 """A body on a line whose position is bounded (Bryson, Denham and Dreyfus 1963; Bryson and Ho, 3.11).
 
-It moves from (0, 1) to (0, -1) in unit time with minimum effort and x <= l. In closed form, J = 2 where l >= 1/4 and
-the bound is not met, 2 + 6 (1 - 4 l)^2 where it is touched (1/6 <= l), and 4/(9 l) where the body rests at it. The
-second problem is a clamped beam whose deflection is bounded.
+It moves from (0, 1) to (0, -1) in unit time with minimum effort and x <= l. In closed form, the minimum is J = 2 for l
+>= 1/4, where the bound is not reached; 2 + 6 (1 - 4 l)^2 for 1/6 <= l <= 1/4, where it is touched; and 4/(9 l) for
+smaller l, where the body stays at the bound for some time. The second problem is a clamped beam whose deflection is
+bounded.
 """
 
 from dataclasses import replace

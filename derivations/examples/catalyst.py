@@ -1,4 +1,4 @@
-"""Two catalysts are mixed along a tubular reactor so that as much of the product as possible leaves it.
+"""Two catalysts are mixed along a tubular reactor so that the yield of the product is maximal.
 
 Problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software with COPS 3.0, 2004), after Jackson
 (1968). The position along the reactor plays the part of time. The mixing ratio is one, then singular, then zero.

@@ -1,9 +1,9 @@
-"""Goddard's rocket: a vertical ascent to the greatest altitude that the fuel allows.
+"""Goddard's rocket: a vertical ascent to the maximum altitude that the fuel allows.
 
 Thrust is limited; drag grows with the square of the velocity and falls exponentially with altitude. The optimum has
-full thrust, then a singular arc on which drag balances what gravity costs, then a coast to the top. The data are those
-of Dolan, More and Munson (Benchmarking optimization software with COPS 3.0, 2004), in units of the initial radius, the
-gravity there and the initial mass.
+full thrust, then a singular arc that balances the losses due to drag and to gravity, then a coast to the top. The data
+are those of Dolan, More and Munson (Benchmarking optimization software with COPS 3.0, 2004), in units of the initial
+radius, the gravity there and the initial mass.
 """
 
 from sympy import exp

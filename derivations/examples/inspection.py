@@ -1,4 +1,4 @@
-"""A satellite approaches another and passes an inspection point on the way, at a time that is free."""
+"""A satellite approaches another and passes an inspection point at a free time."""
 
 from dataclasses import replace
 from pathlib import Path

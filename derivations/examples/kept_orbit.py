@@ -1,6 +1,6 @@
-"""Satellites return to their orbit and keep a distance: above a minimum radius, within an angular slot, in a cone.
+"""Satellites return to their orbit under path constraints: a minimum radius, an angular slot, and an approach cone.
 
-The motion is that of polar_orbit; near the orbit, to first order, that of clohessy_wiltshire.
+The motion is that of polar_orbit or, linearised, that of clohessy_wiltshire.
 """
 
 from dataclasses import replace

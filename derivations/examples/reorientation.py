@@ -2,7 +2,7 @@
 
 Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of Guidance, Control, and
 Dynamics 16 (1993): moments of inertia and maximum torques are one, and the body turns by 180 degrees about its third
-axis. A turn about that axis alone is not the quickest.
+axis. A rotation about that axis alone does not take the minimum time.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

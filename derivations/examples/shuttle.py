@@ -1,7 +1,7 @@
-"""A space shuttle enters the atmosphere and glides to the greatest cross-range (Betts 2010, section 6.1).
+"""A space shuttle enters the atmosphere and glides to the maximum cross-range (Betts 2010, section 6.1).
 
 The controls are the angle of attack and the bank angle. The lift coefficient is linear in the angle of attack, the drag
-coefficient quadratic; the bank angle rotates the lift about the velocity. The greatest latitude is 34.1411843 degrees
+coefficient quadratic; the bank angle rotates the lift about the velocity. The maximum latitude is 34.1411843 degrees
 if heating is not limited. It depends on the bounds of the bank angle, because a vehicle with these coefficients would
 glide even further if it flew upside down with negative lift. In the second problem, the heating rate of the leading
 edge of the wing, which depends on the angle of attack, is bounded.

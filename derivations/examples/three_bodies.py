@@ -1,4 +1,4 @@
-"""The circular restricted three-body problem: a spacecraft near two bodies that circle each other.
+"""The circular restricted three-body problem: a spacecraft near two bodies on circular orbits about each other.
 
 The axes rotate with the two bodies about their centre of mass: the first body is at x = -mu R, the second at x = (1 -
 mu) R. The potential V includes that of the centrifugal force; its sign is such that its gradient is a force.
@@ -13,17 +13,17 @@ STATES = tuple(Variable(q, q, "km", f"position {way}") for q, way in zip("xyz", 
 STATES += tuple(Variable(f"{q.symbol}_dot", rf"\dot {q.latex}", "km/s", f"rate of {q.symbol}") for q in STATES)
 PARAMETERS = (
     Variable("n", "n", "rad/s", "angular velocity of the two bodies", 1.0, positive=True),
-    Variable("R", "R", "km", "distance of the two bodies", 1.0, positive=True),
-    Variable("mu", r"\mu", "1", "mass of the second body over that of both", 0.01215, positive=True),
+    Variable("R", "R", "km", "distance between the two bodies", 1.0, positive=True),
+    Variable("mu", r"\mu", "1", "mass of the second body as a fraction of the total mass", 0.01215, positive=True),
 )
-AHEAD = Variable("x1", "x_1", "km", "position of the first body on their line")
-BEYOND = Variable("x2", "x_2", "km", "position of the second body on their line", positive=True)
+AHEAD = Variable("x1", "x_1", "km", "position of the first body on the line of the two bodies")
+BEYOND = Variable("x2", "x_2", "km", "position of the second body on the line of the two bodies", positive=True)
 MU_1 = Variable("mu1", r"\mu_1", "km**3/s**2", "gravitational parameter of the first body", positive=True)
 MU_2 = Variable("mu2", r"\mu_2", "km**3/s**2", "gravitational parameter of the second body", positive=True)
 R1 = Variable("r1", "r_1", "km", "distance from the first body", positive=True)
 R2 = Variable("r2", "r_2", "km", "distance from the second body", positive=True)
-U = Variable("U", "U", "km**2/s**2", "potential of the attraction of both bodies")
-V = Variable("V", "V", "km**2/s**2", "potential with the turning of the axes")
+U = Variable("U", "U", "km**2/s**2", "gravitational potential of both bodies")
+V = Variable("V", "V", "km**2/s**2", "potential including the centrifugal part")
 
 x, y, z, x_dot, y_dot, z_dot = symbols_of(STATES)
 n, R, mu = symbols_of(PARAMETERS)
@@ -67,15 +67,15 @@ TRANSLATIONS = {
         "position along the normal of their plane": "posisi sepanjang normal bidang kedua benda",
         "gravitational parameter of the first body": "parameter gravitasi benda pertama",
         "gravitational parameter of the second body": "parameter gravitasi benda kedua",
-        "mass of the second body over that of both": "massa benda kedua dibagi massa keduanya",
-        "distance of the two bodies": "jarak kedua benda",
+        "mass of the second body as a fraction of the total mass": "massa benda kedua dibagi massa keduanya",
+        "distance between the two bodies": "jarak kedua benda",
         "angular velocity of the two bodies": "kecepatan sudut kedua benda",
-        "position of the first body on their line": "posisi benda pertama pada garis keduanya",
-        "position of the second body on their line": "posisi benda kedua pada garis keduanya",
+        "position of the first body on the line of the two bodies": "posisi benda pertama pada garis keduanya",
+        "position of the second body on the line of the two bodies": "posisi benda kedua pada garis keduanya",
         "distance from the first body": "jarak dari benda pertama",
         "distance from the second body": "jarak dari benda kedua",
-        "potential of the attraction of both bodies": "potensial tarikan kedua benda",
-        "potential with the turning of the axes": "potensial dengan putaran sumbu",
+        "gravitational potential of both bodies": "potensial tarikan kedua benda",
+        "potential including the centrifugal part": "potensial dengan putaran sumbu",
         "first body": "benda pertama",
         "second body": "benda kedua",
     }

@@ -1,4 +1,4 @@
-"""The axes along the velocity of a satellite on a Kepler orbit: how they turn as the true anomaly grows.
+"""Axes aligned with the velocity of a satellite on a Kepler orbit, and their angular velocity.
 
 The orbit is a conic of eccentricity e; its motion follows from the angular momentum alone. The velocity makes the
 flight path angle beta with the local horizontal, so that the axes rotate through the angle f - beta.
@@ -27,7 +27,7 @@ v_r = mu / h * e * sin(f)
 
 velocity_frame = FirstOrder(
     name="velocity_frame",
-    title="The axes along the velocity on a Kepler orbit",
+    title="Axes aligned with the velocity on a Kepler orbit",
     states=STATES,
     controls=(),
     parameters=PARAMETERS,
@@ -45,7 +45,7 @@ PROBLEMS = (velocity_frame,)
 
 TRANSLATIONS = {
     "id": {
-        "The axes along the velocity on a Kepler orbit": "Sumbu sepanjang kecepatan pada orbit Kepler",
+        "Axes aligned with the velocity on a Kepler orbit": "Sumbu yang searah dengan kecepatan pada orbit Kepler",
         "flight path angle": "sudut lintasan terbang",
         "eccentricity": "eksentrisitas",
         "true anomaly": "anomali sejati",
