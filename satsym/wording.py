@@ -60,7 +60,7 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     near = get_close_matches(name[:LIMIT], known, n=1)
     if near:
         return f'did you mean "{near[0]}"?'
-    return f"known here: {some(known)}" if known else "remove it; no entry is allowed here"
+    return f"available: {some(known)}" if known else "remove it; no entry is allowed here"
 
 
 def refuse_unknown(what: str, name: str, known: Collection[str]) -> None:

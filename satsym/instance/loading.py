@@ -193,7 +193,7 @@ def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptio
         return None
     if table.follows not in spec.state_names:
         have = ", ".join(spec.state_names)
-        raise BadInput(f"[classical] follows: the model has no state {shown(table.follows)}; states here: {have}")
+        raise BadInput(f"[classical] follows: the model has no state {shown(table.follows)}; available states: {have}")
     state = spec.states[spec.state_names.index(table.follows)]
     if len(spec.controls) != 1:
         raise BadInput(
@@ -281,7 +281,7 @@ def driven(table: DrivenTable | None, spec: ProblemSpec) -> DrivenOptions | None
         return None
     if table.control not in spec.control_names:
         have = ", ".join(spec.control_names) or "none"
-        raise BadInput(f"[driven] control: the model has no control {shown(table.control)}; controls here: {have}")
+        raise BadInput(f"[driven] control: the model has no control {shown(table.control)}; available controls: {have}")
     if not table.by:
         raise BadInput("[driven] by: an empty list; name at least one instance that determines the control")
     return DrivenOptions(table.control, tuple(table.by))

@@ -247,7 +247,7 @@ def _instead(text: str, keys: list[Key]) -> str:
     if not own:
         return suggestion(text, [key.text for key in keys])
     near = get_close_matches(name, own, n=1)
-    return f'did you mean "{table}.{near[0]}"?' if near else f"known here: {some([f'{table}.{one}' for one in own])}"
+    return f'did you mean "{table}.{near[0]}"?' if near else f"available: {some([f'{table}.{one}' for one in own])}"
 
 
 def changed(instance: Instance, values: Mapping[str, float]) -> Instance:

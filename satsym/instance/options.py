@@ -32,7 +32,9 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
     for name in options.free_angles:
         if name not in [v.symbol for v in angles]:
             have = ", ".join(v.symbol for v in angles) or "none"
-            raise BadInput(f"[solver] free_angles: {shown(name)} is not a state that is an angle; angles here: {have}")
+            raise BadInput(
+                f"[solver] free_angles: {shown(name)} is not a state that is an angle; available angles: {have}"
+            )
     _no_repetition(options.free_angles, "[solver] free_angles")
     refuse_too_many_steps(options, spec)
     return options
@@ -46,7 +48,7 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
     for name in inputs:
         if name not in spec.control_names:
             have = ", ".join(spec.control_names) or "none"
-            raise BadInput(f"[lqr] inputs: the model has no control {shown(name)}; controls here: {have}")
+            raise BadInput(f"[lqr] inputs: the model has no control {shown(name)}; available controls: {have}")
     _no_repetition(inputs, "[lqr] inputs")
     if not inputs:
         raise BadInput("[lqr] inputs: no control input remains; name at least one control")

@@ -44,7 +44,7 @@ Variations = dict[str, Spread]
 Flag = Annotated[bool, Meta(description="true or false")]
 Gains = Annotated[
     tuple[float, float],
-    Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
+    Meta(description="two numbers, the gains of the rate and of the angle, such as [13.56, 0.0678]"),
 ]
 
 

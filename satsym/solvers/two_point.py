@@ -81,7 +81,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     """
     spec, led = instance.model.spec, from_guess(instance, limits)
     if led is None and (spec.stationary or spec.directional):
-        message = "no extremal is known near which Newton's method could begin: guess states and costates"
+        message = "Newton's method has no initial guess: give states and costates in [guess]"
         return nothing(instance, Status.NOT_CONVERGED, message)
     if led is not None:
         problem, start = led

@@ -42,7 +42,7 @@ def design(asked: StudyTable, instance: Instance) -> Design:
         )
     if not vary and not drawn:
         known = ", ".join(key.text for key in keys.known(instance.model.spec))
-        raise BadInput(f"the study varies no key; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
+        raise BadInput(f"the study varies no key; write --vary KEY={RANGE}; available keys: {printable(known, 300)}")
     seen: set[str] = set()
     for name in (*(name for name, _ in vary), *(name for _, name, _ in drawn)):
         if (key := keys.find(name, instance).text) in seen:

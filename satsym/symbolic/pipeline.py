@@ -198,8 +198,7 @@ def _moving(
     if not steps:
         kinds = " or ".join(sorted(kind.__name__ for kind in _kinds(Model) if which in vars(kind)))
         raise DerivationError(
-            f"a model of the kind {type(model).__name__} has no derivation steps of its own; declare the model as "
-            f"{kinds}"
+            f"there are no derivation steps for models of the kind {type(model).__name__}; declare the model as {kinds}"
         )
     refuse_misfits(model, problem)
     derivation = begin(model, problem)

@@ -119,7 +119,7 @@ def limited(solution: Solution, seconds: float) -> Solution:
     return replace(solution, instance=replace(solution.instance, solver=options))
 
 
-LATE = {f"time limit reached before: {kind}" for kind in ("seeded starts", "structure of boundary arcs")}
+LATE = {f"not checked within the time limit: {kind}" for kind in ("seeded starts", "structure of boundary arcs")}
 """Checks that fail where nobody had the time to compare."""
 
 

@@ -319,7 +319,7 @@ def test_a_single_competitor_that_was_solved_is_something_to_compare_with() -> N
     assert failing(tried(Kind.STARTS, 0), tried(Kind.DURATIONS, 0)) == [UNCOMPARED]
     assert failing(tried(Kind.STARTS, 0), tried(Kind.DURATIONS, 1)) == []
     assert failing(replace(tried(Kind.STARTS, 0), enough=True)) == []
-    assert failing(tried(Kind.STARTS, 0, interrupted=True)) == ["time limit reached before: seeded starts"]
+    assert failing(tried(Kind.STARTS, 0, interrupted=True)) == ["not checked within the time limit: seeded starts"]
 
 
 @pytest.mark.parametrize("guessed", [False, True])

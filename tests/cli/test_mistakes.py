@@ -13,7 +13,7 @@ __all__ = ["case", "run"]
 
 OPTIONS = {
     "both bounds at once": ("control.u1=0.1", "bounds are control.u1.lower and control.u1.upper"),
-    "a parameter of another model": ("parameters.lowest=1", "known here: parameters.sigma"),
+    "a parameter of another model": ("parameters.lowest=1", "available: parameters.sigma"),
     "a letter too few": ("parameters.sigm=1", 'did you mean "parameters.sigma"?'),
     "a state without its table": ("r=1", 'did you mean "initial.r"?'),
 }

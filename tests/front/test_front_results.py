@@ -111,7 +111,7 @@ def test_at_nodes_it_is_what_it_is_there_and_it_indexes_like_an_array() -> None:
         (lambda s: s.u["u1"]([1.0, -0.5]), 'u["u1"]: the time -0.5 does not lie between 0 and'),
         (lambda s: s.lam(float("nan")), "lam: the time nan does not lie between 0 and"),
         (lambda s: s.x("soon"), 'x: "soon" is not a time'),
-        (lambda s: s.x["q"], 'x: has no "q"; known here: r, r_dot'),
+        (lambda s: s.x["q"], 'x: has no "q"; available: r, r_dot'),
         (lambda s: s.plot()["orbits"], 'there is no picture "orbits"; did you mean "orbit"'),
     ],
 )

@@ -301,5 +301,5 @@ def test_python_exports_what_it_solved(tmp_path) -> None:
     motion = satsym.simulate("molniya")
     text = satsym.export(motion, "stk", tmp_path / "molniya.e")
     assert (tmp_path / "molniya.e").read_text(encoding="utf-8") == text
-    with pytest.raises(BadInput, match='there is no export format "gpx"; known here: oem, czml, stk, csv'):
+    with pytest.raises(BadInput, match='there is no export format "gpx"; available: oem, czml, stk, csv'):
         satsym.export(motion, "gpx")

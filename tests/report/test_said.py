@@ -142,7 +142,7 @@ COMPOSED = (
         for what in MISSHAPEN
     ),
     "[lqr] <key>: no control input remains; name at least one control",
-    "[lqr] <key>: the model has no control <name>; controls here: <names>",
+    "[lqr] <key>: the model has no control <name>; available controls: <names>",
     "[classical] <key>: <value> are not both positive, so the loop would not be stable",
     *"Usage Options Commands [OPTIONS]".split(),
     *(f"<value> is not a valid {kind}." for kind in ("integer", "integer range", "float", "float range")),

@@ -37,7 +37,7 @@ def test_both_forms_hold_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_without_pyarrow_it_is_refused_in_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study_table, "find_spec", lambda _: None)
-    for form, said in (("parquet", r"pip install 'satsym\[table\]'"), ("xls", "unknown; known here: csv, parquet")):
+    for form, said in (("parquet", r"pip install 'satsym\[table\]'"), ("xls", "unknown; available: csv, parquet")):
         with pytest.raises(BadInput, match=said):
             satsym.study("double-integrator-energy", tmp_path / "none", vary=VARY, table=form)
     assert not (tmp_path / "none").exists()

@@ -185,7 +185,7 @@ hanging = Linearised(
         ({"about": {q1: 0}}, "no value for q2"),
         (
             {"about": {q1: 0, q2: 0, f1: 1}},
-            "f1 is not zero along the reference motion; give the deviation a name of its own",
+            "f1 is not zero along the reference motion; give the deviation a different name",
         ),
         ({"about": {q1: d1, q2: 0}}, "cannot depend on d1|undeclared symbols: d1"),
         ({"deviations": {d1: q1 - 1, d2: q2}}, "some deviations do not vanish"),

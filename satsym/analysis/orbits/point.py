@@ -65,8 +65,9 @@ class Point:
         """Explain what the eigenvalues can tell about the orbit, and what they cannot."""
         found = (
             "The eigenvalues are ±sqrt(2 mu/r^3) and, twice, ±i sqrt(mu/r^3): they depend on the distance r "
-            "alone, not on the velocity. One of them is positive at every distance, so the rule calls every "
-            "orbit unstable, whether circle, ellipse, parabola or hyperbola: it distinguishes nothing. The sum "
+            "alone, not on the velocity. One of them is positive at every distance, so by this rule every orbit is "
+            "unstable, whether circle, ellipse, parabola or hyperbola: the rule does not distinguish between orbits. "
+            "The sum "
             "of the eigenvalues is zero, so they are never all negative, as asymptotic stability would "
             "require. No point of an orbit is an equilibrium, so the theorems about eigenvalues at equilibria "
             "do not apply."

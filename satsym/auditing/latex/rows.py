@@ -122,7 +122,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
             broken = depth > 0
         elif token.kind == "sign" and token.text == "&" and not inside:
             if not systems:
-                raise Unread('an "&" stands outside aligned lines', token.at)
+                raise Unread('there is an "&" outside aligned lines', token.at)
             if depth <= 0 and not _goes_on(rows[-1]) and not _asks(rows[-1]):
                 rows[-1].append(token)
         elif token.kind == "macro" and token.text == REMARK and not inside:

@@ -60,8 +60,8 @@ def audit(
 
     Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives. LEDGER
     is a document that comes with satsym, or a TOML file that lists the items of a document and says what each of them
-    is to be checked against. Every verdict is computed; a ledger cannot contain verdicts. The exit code is 0 whatever
-    the verdicts.
+    is to be checked against. Every verdict is computed; a ledger cannot contain verdicts. The exit code does not
+    depend on the verdicts.
     """
     from satsym import auditing
     from satsym.auditing import cache

@@ -39,9 +39,9 @@ In single quotes the shell leaves backslashes alone."""
 def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
     """Check whether a printed formula is right, and say what is wrong with it.
 
-    FORMULA is LaTeX or plain notation. It is checked against every equation that satsym derives for the model, in any
-    rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects it.
-    Exit codes: 0 right, 5 wrong, 4 undecided.
+    FORMULA is LaTeX or plain notation. The formula is compared with every equation that satsym derives for the model,
+    in any rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects
+    it. Exit codes: 0 right, 5 wrong, 4 undecided.
     """
     from satsym.auditing.check.answer import check_in
     from satsym.auditing.check.answers import as_object, worst

@@ -32,7 +32,9 @@ MAX_SECONDS = 900.0
 @command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write into this folder instead of generated/ in the checkout.")
-@click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
+@click.option(
+    "--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything would change."
+)
 @click.option("--fresh", is_flag=True, help="Derive everything again, even what has not changed.")
 @click.option(
     "--max-seconds",
@@ -48,8 +50,8 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
     Writes NAME.py, NAME.tex and NAME.derivation.json for each problem in the FILEs or, without a FILE, for each
     problem that comes with satsym. NAME.derivation.json lists every equation; audits read it. Every step is checked
     by machine, and so is every generated function, before anything is written. A file is derived again only if the
-    file or the code that derives it has changed; with --check, everything is derived. NAME.tex is in English,
-    whatever --lang says; `satsym latex NAME --lang id` writes it in Indonesian.
+    file or the code that derives it has changed; with --check, everything is derived. NAME.tex is always in English;
+    `satsym latex NAME --lang id` writes it in Indonesian.
     """
     from satsym import source_files
     from satsym.report import artefacts

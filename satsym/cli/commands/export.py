@@ -40,8 +40,8 @@ def export(subject: str, kind: str, out: Path | None, source: Path | None, value
     """Write a motion about a central body for other programs.
 
     X is an instance as for `satsym solve`, with a table [orbit] that says when the motion takes place and how its
-    plane lies in space. It is solved; where its model has no cost, the uncontrolled motion is simulated. Formats are
-    oem (orbit ephemeris message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
+    plane lies in space. The instance is solved; if its model has no cost, the uncontrolled motion is simulated.
+    Formats are oem (orbit ephemeris message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
     """
     from satsym import instance
     from satsym.instance.numbers import changed

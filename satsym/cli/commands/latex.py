@@ -36,8 +36,8 @@ Examples:
 def latex(name: str, output: Path | None, fragment: bool, convention: Convention | None) -> ExitCode:
     """Typeset a derivation.
 
-    NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived afresh, and every step is
-    checked by machine before anything is written.
+    NAME is a shipped model (`satsym models` lists them) or a derivation file. The problem is derived again, and every
+    step is checked by machine before anything is written.
     """
     from satsym.report.latex import document as typesetting
     from satsym.report.results.files import write_text

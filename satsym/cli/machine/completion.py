@@ -23,7 +23,7 @@ Examples:
 def completion(shell: str) -> ExitCode:
     """Print the completion script for a SHELL: bash, zsh or fish.
 
-    With it, the TAB key completes commands, options, and the names of instances, models and documents.
+    With this script, the TAB key completes commands, options, and the names of instances, models and documents.
     """
     complete = get_completion_class(shell)
     assert complete is not None  # of all that may be chosen

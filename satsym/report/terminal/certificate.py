@@ -26,7 +26,7 @@ _HOLDS = {
         "controls switch between the nodes adjacent to the stated times"
     ),
     "stated times of saturation": "controls meet their bounds at the stated times",
-    "the two minimisers of H at a jump are still equally good after it": (
+    "the two minimisers of H are still equally good after a jump": (
         "the two minimisers of H are equally good only at the jump itself"
     ),
     "coinciding switching times": "switching times distinct",
@@ -87,7 +87,7 @@ _FAILS = {
     "junction defect": "arcs joined with gaps",
     "kernels contradict each other": "generated kernels do not agree",
     "a terminal limit is violated": "terminal limits violated",
-    "the two minimisers of H at a jump are still equally good after it": (
+    "the two minimisers of H are still equally good after a jump": (
         "the minimisers of H on both sides of a jump are equally good"
     ),
     "the multiplier of a terminal limit vanishes": "a multiplier of a terminal limit is zero",

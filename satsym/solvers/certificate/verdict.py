@@ -178,9 +178,7 @@ def _jump_checks(solution: Solution) -> list[Check]:
         else []
     )
     found += (
-        [Check("the two minimisers of H at a jump are still equally good after it", float(flat), 0.0)]
-        if crossing
-        else []
+        [Check("the two minimisers of H are still equally good after a jump", float(flat), 0.0)] if crossing else []
     )
     return found + ([Check("another minimiser of H remains equally good", float(tied), 0.0)] if tied else [])
 

@@ -91,7 +91,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
 
 def _jumping(controls: list[str]) -> str:
     """What is said of controls whose Hamiltonian may have several minimisers."""
-    advice = "where two of them stay equally good there is no optimum (chattering)"
+    advice = "if two of them remain equally good, there is no optimum (chattering)"
     return f"H may have several minimisers in {', '.join(controls)}, and {advice}"
 
 
@@ -100,13 +100,13 @@ def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
     longer, shorter = (coarse.costs_by_duration(instance, limits, shares) for shares in (LONGER, SHORTER))
     both = longer + shorter
     if longer and shorter and not any(_clearly_less(a, b) for a in both for b in both):
-        return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix it"
+        return Status.NO_MINIMISER, f"nothing determines the final time: {_listed(longer)}; fix the final time"
     if _always_cheaper(instance, longer, limits):
         advice = "add a cost of time, or fix the final time"
         return Status.NO_MINIMISER, f"a longer duration is always cheaper: {_listed(longer)}; {advice}"
     if shorter and all(_clearly_less(b, a) for a, b in pairwise(shorter)):
         advice = "give time a smaller weight, constrain the final state, or fix the final time"
-        return Status.NO_MINIMISER, f"shorter is always cheaper: {_listed(shorter)}; {advice}"
+        return Status.NO_MINIMISER, f"a shorter duration is always cheaper: {_listed(shorter)}; {advice}"
     return None
 
 

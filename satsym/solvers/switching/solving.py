@@ -258,8 +258,8 @@ def refuse(instance: Instance) -> None:
         )
     if instance.tf is None and instance.final and _there(instance):
         raise BadInput(
-            f"{instance.called}: [initial]: the initial state satisfies the final conditions, so the best "
-            "final time is zero; change the initial state, or give a final time"
+            f"{instance.called}: [initial]: the initial state satisfies the final conditions, so the optimal final "
+            f"time is zero; change the initial state, or give a final time"
         )
 
 

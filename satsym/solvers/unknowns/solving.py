@@ -327,7 +327,7 @@ def _met_beside(trials: Trials, here: Trial) -> str | None:
     length = max(float(np.linalg.norm(here.slope)), 1e-300)
     beside = [trials(here.at + sign * NEAR_UNITS * here.slope / length) for sign in (1.0, -1.0)]
     if beside[1] is None:
-        return "falls towards the edge of what has an answer,"
+        return "decreases towards the limit of the values that have a solution,"
     if all(one is None or one.cost > here.cost for one in beside):
         return "has a corner, where costates are not unique,"
     return None

@@ -90,7 +90,7 @@ class Linearised(Derived):
         if missing := [s.name for s in symbols_of(of.states) if s not in self.about]:
             yield f"the reference motion is incomplete: it has no value for {', '.join(missing)}"
         if kept := [u.name for u in old_controls if u in controls and self.about.get(u, 0) != 0]:
-            yield f"{', '.join(kept)} is not zero along the reference motion; give the deviation a name of its own"
+            yield f"{', '.join(kept)} is not zero along the reference motion; give the deviation a different name"
         if set(self.deviations) != {*states, *new}:
             yield "give exactly one deviation for each state and each new control"
         if self.definitions != of.definitions:

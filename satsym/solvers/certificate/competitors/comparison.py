@@ -45,7 +45,7 @@ class Compared:
     def checks(self) -> list[Check]:
         """Checks that no competitor is cheaper, if one has a cost, and that there was time for all."""
         cheaper = Check(f"cheaper by: {self.summary.kind.value}", max(0.0, -self.margin), COST_MARGIN)
-        late = Check(f"time limit reached before: {self.summary.kind.value}", 1.0, 0.0)
+        late = Check(f"not checked within the time limit: {self.summary.kind.value}", 1.0, 0.0)
         return [*([cheaper] if math.isfinite(self.margin) else []), *([late] if self.interrupted else [])]
 
     def joined(self, other: Compared) -> Compared:

@@ -72,7 +72,7 @@ def certify(
     except TooMuchWork:
         again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
     except OutOfTime:
-        late = "time limit reached before: flow from the initial costates"
+        late = "not checked within the time limit: flow from the initial costates"
         return unmeasured(late, Verdict.EXTREMAL_ONLY, tuple(kinds(solution.instance))), None
     first = [] if again is None else _first_order(solution, again)
     if not first or not all(c.passed for c in first):
@@ -150,7 +150,7 @@ def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Chec
     except TooMuchWork:
         return [Check(f"{name} is integrated within {EVALUATIONS} evaluations", 1.0, 0.0)]
     except OutOfTime:
-        return [Check(f"time limit reached before: {name}", 1.0, 0.0)]
+        return [Check(f"not checked within the time limit: {name}", 1.0, 0.0)]
     flat = not least > CURVED
     return [Check(name, float(flat), 0.0), *([LATER] if flat and form.flat_by_shift(CURVED) else [])]
 
