@@ -45,7 +45,7 @@ def test_least_time_to_a_point_that_cannot_be_held_is_local(tmp_path: Path):
         moved(tmp_path, {x: v, v: w}, "[initial]\nx = 1.0\nv = 0.0\n[final]\nx = 0.0\nv = 1.0\n")
     )
     assert (verdict, scope) == (Verdict.CERTIFIED, Scope.LOCAL)
-    assert because == THEOREMS["second variation in the switching times"]
+    assert because == THEOREMS["second variation with respect to the switching times"]
 
 
 def test_an_end_that_only_a_bound_holds_is_no_reason(tmp_path: Path):

@@ -143,7 +143,7 @@ def test_hardly_any_time_to_spare_is_no_failure(tmp_path: Path) -> None:
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
     failed = [check.name for check in found.certificate.checks if not check.passed]
-    assert failed == ["second variation in arc lengths and directions"]
+    assert failed == ["second variation with respect to arc lengths and directions"]
 
 
 @pytest.mark.study

@@ -75,7 +75,7 @@ def test_a_minimum_is_not_certified_where_another_start_leads_to_a_cheaper_one(i
 
 def test_an_extremal_that_is_no_minimum_is_shown_to_be_none(instance: Instance):
     """By the second variation, and by other starts."""
-    expected = {"second variation in the switching times", "cheaper by: seeded starts"}
+    expected = {"second variation with respect to the switching times", "cheaper by: seeded starts"}
     assert failed(extremal(instance, 2.0 / 3.0)) == expected
 
 

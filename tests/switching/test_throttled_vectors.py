@@ -322,7 +322,7 @@ def test_a_transfer_that_may_begin_at_any_time_is_no_strict_minimum():
     met = instance.load("transfer-fuel")
     found = solve(replace(met, final={k: v for k, v in met.final.items() if k != "theta"}))
     assert found.status is Status.CONVERGED
-    assert failed(found) == ["second variation in arc lengths and directions", LATER.name]
+    assert failed(found) == ["second variation with respect to arc lengths and directions", LATER.name]
 
 
 @pytest.mark.study
@@ -381,7 +381,7 @@ def test_a_minimum_ends_where_leaving_the_straight_line_pays(tmp_path: Path):
         assert again is not None
         passed = {check.name: check.passed for check in again.checks}
         assert passed["stationarity"]
-        assert passed["second variation in arc lengths and directions"] == (share < 1.0)
+        assert passed["second variation with respect to arc lengths and directions"] == (share < 1.0)
 
 
 @pytest.mark.slow

@@ -60,8 +60,10 @@ _HOLDS = {
     "derivative of the cost with respect to the times at the waypoints": (
         "cost stationary with respect to the times at the waypoints"
     ),
-    "second variation in arc lengths and directions": "second variation positive in lengths and directions of arcs",
-    "second variation in the switching times": "second variation positive in the switching times",
+    "second variation with respect to arc lengths and directions": "second variation positive with respect to arc "
+    "lengths and directions",
+    "second variation with respect to the switching times": "second variation positive with respect to the switching "
+    "times",
     "second variation with fixed active arcs": "second variation positive with fixed active arcs",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
     "second-order condition at the free initial point": "second-order condition at the free initial point holds",
@@ -79,7 +81,7 @@ _FAILS = {
     "cost": "cost not confirmed by integration",
     "correction of the nodes": "nodes do not lie on the recomputed trajectory",
     "derivative of the cost with respect to the times at the waypoints": (
-        "cost not stationary in the times at the waypoints"
+        "cost not stationary with respect to the times at the waypoints"
     ),
     "dynamics defect": "equations of motion not satisfied",
     "gaps where the integration restarts": "trajectory not continuous where integration restarts",

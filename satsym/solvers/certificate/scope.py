@@ -28,16 +28,16 @@ THEOREMS = {
     "no proof of a minimum along singular arcs: the problem is not convex": (
         "convexity around the extremal (Mangasarian 1966)"
     ),
-    "second variation in arc lengths and directions": "strict signs of the switching functions and a positive "
-    "second variation in arc lengths and directions (Chen, Caillau and Chitour 2016)",
+    "second variation with respect to arc lengths and directions": "strict signs of the switching functions and a "
+    "positive second variation with respect to arc lengths and directions (Chen, Caillau and Chitour 2016)",
     "second variation with fixed active arcs": "positive multipliers and a positive second variation with "
     "fixed active arcs (Maurer 1981; Bonnans and Hermant 2009)",
     "a multiplier vanishes on a boundary arc": (
         "positive multipliers, strict signs of the switching functions and a positive "
-        "second variation in the switching and junction times (Maurer and Vossen 2009)"
+        "second variation with respect to the switching and junction times (Maurer and Vossen 2009)"
     ),
-    "second variation in the switching times": "the strict bang-bang condition and a positive second variation in the "
-    "switching times (Agrachev, Stefani and Zezza 2002; Maurer and Osmolovskii 2004)",
+    "second variation with respect to the switching times": "the strict bang-bang condition and a positive second "
+    "variation with respect to the switching times (Agrachev, Stefani and Zezza 2002; Maurer and Osmolovskii 2004)",
     "conjugate points: none": "the strict Legendre-Clebsch condition and no conjugate points (Bryson and Ho 1975, "
     "chapter 6)",
     "switching function vanishes on an arc": "signs of the switching functions in a problem that is convex around the "

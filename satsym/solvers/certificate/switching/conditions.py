@@ -144,7 +144,7 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
 def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
     """The second variation in the times of junctions and, where vectors are throttled, in directions as well."""
     throttled = solution.instance.model.spec.throttled
-    name = f"second variation in {'arc lengths and directions' if throttled else 'the switching times'}"
+    name = f"second variation with respect to {'arc lengths and directions' if throttled else 'the switching times'}"
     try:
         least, form = curvature(solution, extended, Integration(np.concatenate(typical(solution)), limits))
     except TooMuchWork:
