@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 
 from satsym import instance
+from satsym.instance.shown import spec_of
 from satsym.report.plots.scene import Scene
 from satsym.report.results.objects import cost_per
 from satsym.report.results.objects import units as units_object
-from satsym.report.shown import spec_of
 from satsym.report.terminal.solution import solution_text
 from satsym.solvers import solve
 
@@ -39,10 +39,15 @@ def test_the_product_of_radius_and_rate_decides_and_not_one_of_them() -> None:
     assert units("return-to-orbit", sigma=2.0) == KILOMETRES
 
 
-@pytest.mark.parametrize("name", ["cart-pole", "lapan-minimum-time", "shuttle", "inspection"])
+@pytest.mark.parametrize("name", ["cart-pole", "lapan-minimum-time", "shuttle", "goddard"])
 def test_models_without_a_centre_of_attraction_keep_their_units(name: str) -> None:
     case = instance.load(name)
     assert spec_of(case) is case.model.spec
+
+
+def test_motion_near_an_orbit_of_radius_and_rate_one_has_no_units() -> None:
+    assert set(units("inspection")) == set(units("approach-cone")) == {"1"}
+    assert units("inspection", sigma=7000.0) == units("inspection", omega=0.001) == ("km", "km/s", "km", "km/s")
 
 
 def test_tables_and_pictures_leave_the_units_out_and_programs_read_them() -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from satsym.instance.shown import spec_of
 from satsym.proof.record import Enclosure, Outcome, Proof
 from satsym.report.display import capitalised, number, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
-from satsym.report.shown import spec_of
 from satsym.report.terminal.arcs import in_words, rows_of_arcs
 from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
 from satsym.report.terminal.solution import boundary, control_rows, state_rows

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from satsym.control_set import stated_constraints
 from satsym.instance import Instance
 from satsym.instance.files import text as text_of
+from satsym.instance.shown import spec_of
 from satsym.proof.record import Proof
 from satsym.report import plots
 from satsym.report.display import raised, unit_text
@@ -28,7 +29,6 @@ from satsym.report.plots import style
 from satsym.report.plots.scene import Scene
 from satsym.report.results.objects import file_of, time_unit
 from satsym.report.said import decimal, message, say, spoken
-from satsym.report.shown import spec_of
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution

@@ -9,11 +9,11 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.instance.shown import spec_of
 from satsym.report import display
 from satsym.report.plots import curves
 from satsym.report.results import restrictions
 from satsym.report.said import message, say
-from satsym.report.shown import spec_of
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.instance.shown import spec_of
 from satsym.instance.unknowns import Place
 from satsym.report.results.objects import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
-from satsym.report.shown import spec_of
 from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
 from satsym.report.terminal.certificate import certificate_lines
 from satsym.report.terminal.table import WIDEST, figure, joined, room, table, wrapped

@@ -14,6 +14,7 @@ import numpy as np
 
 from satsym import activity
 from satsym.instance import Instance
+from satsym.instance.shown import spec_of
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search.arriving import ARRIVED, Missing, arrived, arriving, distance, missed
 from satsym.solvers.search.controls import controls_of
@@ -124,7 +125,7 @@ def nearest(instance: Instance, limits: Limits) -> Nearest | None:
     places = [*programme.given.tolist(), *programme.on_reference]
     names = [*(spec.state_names[i] for i in places), *(f"the constraint of {v.symbol}" for v in spec.multipliers)]
     units = [*programme.sizes.states[places], *(1.0 for _ in spec.multipliers)]
-    given = {v.symbol: v.unit for v in spec.states if v.unit != "1"}
+    given = {v.symbol: v.unit for v in spec_of(instance).states if v.unit != "1"}
     by_name = dict(zip(names, (by * np.array(units)).tolist(), strict=True))
     agreeing = sum(distance(one) <= (1.0 + SIMILAR) * least for one in found)
     return Nearest(by_name, given, least, len(found), agreeing)
