@@ -6,6 +6,8 @@ from typing import Any
 
 CARD = "-card"
 """What follows the name of an instance in that of its card."""
+OVER_TIME = "catalyst", "chain"
+"""Instances whose first state over time tells more than it does over the second."""
 WIDE, HIGH = 3.5, 2.8
 """Size of a card, in inches."""
 
@@ -100,7 +102,7 @@ def _card(scene: Any) -> Any:
     page = _empty()
     if (shown := scenes.Orbit.of(scene)) is not None:
         scenes.in_space(page.subplots(), shown, shown.views[0])
-    elif planes := phase_planes.of(scene):
+    elif scene.instance.name not in OVER_TIME and (planes := phase_planes.of(scene)):
         phase_planes.draw(page.subplots(), planes[0])
     else:
         small_multiples(page, scene, [(series.states(scene)[0], style.STATE)], 1)

@@ -212,3 +212,19 @@ def test_restrictions_are_those_of_given_states_alone() -> None:
     assert {one.name for one in restrictions.within(found, [2], timed=True)} == {"ahead", "behind"}
     assert restrictions.within(found, [2]) == []
     assert restrictions.within(found, [0, 1], timed=True) == []
+
+
+@pytest.mark.slow
+def test_a_motion_that_tells_its_angle_by_a_rate_alone_is_drawn_in_its_plane() -> None:
+    """From the Earth's orbit to that of Mars: the angle is the integral of the transverse velocity over the radius."""
+    scene = Scene.of(solve(instance.load("transfer-time")))
+    shown = Orbit.of(scene)
+    assert shown is not None
+    assert shown.thrust is not None
+    assert shown.around.other is not None
+    np.testing.assert_allclose(np.hypot(*shown.path), scene.x[0], rtol=1e-12)
+    np.testing.assert_allclose(np.hypot(*shown.around.other), 1.525, rtol=1e-8)
+    velocity = np.gradient(shown.path, scene.nodes, axis=1, edge_order=2)
+    np.testing.assert_allclose(np.hypot(*velocity), np.hypot(scene.x[1], scene.x[2]), atol=2e-3)
+    push = 0.1405 / (1.0 - 0.07487 * scene.nodes)
+    np.testing.assert_allclose(np.hypot(*shown.thrust), push, rtol=1e-9)

@@ -16,9 +16,9 @@ from satsym.report.display import engineering, labelled, length_scale, number, p
 from satsym.report.page import switching_functions
 from satsym.report.page.motion import Attitude
 from satsym.report.plots import series, style
-from satsym.report.plots.reading import Reading, read
+from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.scenes import Orbit, box
+from satsym.report.plots.scenes import Orbit
 from satsym.report.plots.series import Series
 from satsym.report.plots.surroundings import Surroundings
 from satsym.report.results.objects import cost_per

@@ -169,6 +169,8 @@ def relative(positions: Array, reference: Array) -> Relative | None:
     return Relative(radius * angle, np.hypot(up, on) - radius)
 
 
+CIRCULAR = 1e-6
+"""How far rates may be from zero on a circular orbit, relative to its velocity and to its acceleration."""
 NUDGE, EXACT = 0.1, 1e-12
 """Distance from the trajectory at which rates are compared, relative to the sizes of states, and their largest
 difference."""
@@ -204,6 +206,51 @@ def polar(states: Sequence[Variable]) -> tuple[int, int] | None:
     if distance is None or angle is None or states[angle].kind != "angle" or states[angle].unit not in ("1", "rad"):
         return None
     return distance, angle
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """A path in a plane whose states are a distance and velocities, and tell the angle by its rate alone.
+
+    Attributes
+    ----------
+    distance
+        Place of that state.
+    path, thrust
+        From an angle of zero at the start, and the acceleration that controls add; shape (2, N+1).
+    circle
+        The circular orbit that the end is on, shape (2, K); ``None`` where it is on none.
+    """
+
+    distance: int
+    path: Array
+    thrust: Array | None
+    circle: Array | None
+
+    @classmethod
+    def of(cls, model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> Swept | None:
+        """The path of a motion with a radial and a transverse velocity, known by what they are said to be; or none."""
+        meant = {state.meaning: i for i, state in enumerate(model.spec.states)}
+        radial, across = meant.get("radial velocity"), meant.get("transverse velocity")
+        named = [i for i, state in enumerate(model.spec.states) if state.symbol in ("r", "rho")]
+        if radial is None or across is None or len(named) != 1:
+            return None
+        r, steps = x[named[0]], np.diff(times)
+        with np.errstate(all="ignore"):
+            rate = x[across] / r
+            angle = np.concatenate([[0.0], np.cumsum(0.5 * steps * (rate[1:] + rate[:-1]))])
+            drift = _drift(model, times, x, p)
+            added = model.dynamics_batch(times, x, u, p) - drift
+        outward = np.array([np.cos(angle), np.sin(angle)])
+        ahead = np.array([-outward[1], outward[0]])
+        thrust = clean(added[radial] * outward + added[across] * ahead)
+        speed = abs(float(x[across, -1]))
+        sizes = np.array([speed, speed**2 / r[-1], speed**2 / r[-1]])
+        closed = bool((np.abs(drift[[named[0], radial, across], -1]) <= CIRCULAR * sizes).all())
+        turn = np.linspace(0.0, 2.0 * np.pi, 361)
+        circle = r[-1] * np.array([np.cos(turn), np.sin(turn)])
+        moves = np.nanmax(np.abs(thrust), initial=0.0) > 0.0
+        return cls(named[0], clean(r * outward), thrust if moves else None, circle if closed else None)
 
 
 def places(states: Sequence[Variable], rated: Sequence[tuple[int, int]]) -> tuple[int, ...]:

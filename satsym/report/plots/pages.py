@@ -130,9 +130,11 @@ def overview(scene: Scene) -> Figure | None:
         return None
     shown = space.Orbit.of(scene)
     states, controls = series.states(scene)[:MOST_PANELS], series.controls(scene)[:MOST_PANELS]
+    limits = series.unseen(scene, shown is not None and bool(shown.around.forbidden))[:MOST_PANELS]
+    groups = (states, style.STATE), (controls, style.CONTROL), (limits, style.INVARIANT)
     columns = style.across(1 if len(states) == 1 else 2)
     narrow = style.across(2) == 1
-    rows = -(-len(states) // columns) + -(-len(controls) // columns)
+    rows = sum(-(-len(quantities) // columns) for quantities, _ in groups)
     height = max(1.0 + 1.55 * rows, 4.2 if shown is None or narrow else 6.2)
     height += 6.0 if narrow and shown is not None else 0.0
     page = style.figure(style.WIDTH, height)
@@ -145,9 +147,9 @@ def overview(scene: Scene) -> Figure | None:
         apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
         left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
         _space(left, shown)
-    small_multiples(right, scene, [(q, style.STATE) for q in states] + [(q, style.CONTROL) for q in controls], columns)
+    small_multiples(right, scene, [(q, colour) for quantities, colour in groups for q in quantities], columns)
     entries = legend.motion(scene, style.STATE) + ([] if shown is None else space.entries(shown))
-    legend.below(page, entries + legend.on_axes([*states, *controls], style.CONTROL))
+    legend.below(page, entries + legend.on_axes([*states, *controls, *limits], style.CONTROL))
     return page
 
 
@@ -218,6 +220,8 @@ ANEW = 100.0
 """Ratio of a residual to the one before it that begins another phase."""
 EXACT = 1e-16
 """Smallest drawn value, relative to the largest; smaller ones are rounding."""
+ELSEWHERE = 0.05
+"""Relative difference from the cost of the answer from which iterations ended at another solution."""
 
 
 def convergence(scene: Scene) -> Figure | None:
@@ -225,7 +229,8 @@ def convergence(scene: Scene) -> Figure | None:
 
     Nothing is drawn for fewer than three iterations.
 
-    A quantity that has fewer than two values above rounding has no panel.
+    A quantity that has fewer than two values above rounding has no panel, nor has the cost where a competitor became
+    the answer, to which these iterations did not lead.
     """
     history = scene.history
     if len(history) < 3:
@@ -235,9 +240,11 @@ def convergence(scene: Scene) -> Figure | None:
     residuals = np.abs(clean(np.array([entry.residual for entry in history])))
     last = scene.spec.objective(scene.result.objective)
     costs = clean(np.array([scene.spec.objective(entry.objective) for entry in history]))
-    distances = np.abs(costs - last) if scene.result.status.answered else np.full_like(costs, np.nan)
+    saturated = _largest(_saturated(scene))
+    near = abs(costs[-1] - last) <= ELSEWHERE * max(_largest([costs[-1], last]), saturated)
+    distances = np.abs(costs - last) if scene.result.status.answered and near else np.full_like(costs, np.nan)
     panels = [
-        (_above_rounding(distances, max(_largest([*costs, last]), _largest(_saturated(scene)))), style.PURPLE),
+        (_above_rounding(distances, max(_largest([*costs, last]), saturated)), style.PURPLE),
         (_above_rounding(residuals, _largest(residuals)), style.GREEN),
     ]
     drawn = [int(np.isfinite(values).sum()) > 1 for values, _ in panels]

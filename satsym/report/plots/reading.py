@@ -19,6 +19,8 @@ BURIED = 1e-3
 FURTHEST, GLIMPSE = 3.0, 0.4
 """Distance beside the main curve, in its widths, up to which everything is shown; and the width shown of what is
 farther."""
+FREE = 1.5
+"""Up to so many widths of a path the uncontrolled motion beside it is shown whole."""
 IN_SIGHT = 2.0
 """Largest distance at which a bound is shown, in widths of the rest."""
 LEVELS = 400
@@ -225,3 +227,27 @@ def _width(values: Array) -> float:
 
 def _size(values: Array) -> float:
     return float(np.abs(_known(values)).max())
+
+
+def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[Array, Array]:
+    """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable.
+
+    Parameters
+    ----------
+    curve, others
+        Shape (2 or 3, N) each.
+    free
+        The uncontrolled motion, of which less is shown.
+    """
+    low, high = np.nanmin(curve, axis=1), np.nanmax(curve, axis=1)
+    width = float((high - low).max()) or np.inf
+    core = (low, high)
+    beside = [(other, FURTHEST) for other in others] + ([] if free is None else [(free, FREE)])
+    for other, furthest in beside:
+        if np.isfinite(other).any(axis=1).all():
+            below, above = core[0] - np.nanmin(other, axis=1), np.nanmax(other, axis=1) - core[1]
+            low = np.minimum(low, core[0] - [within_reach(excess, width, furthest) for excess in below])
+            high = np.maximum(high, core[1] + [within_reach(excess, width, furthest) for excess in above])
+    room = 0.07 * (high - low)
+    room[room == 0.0] = 0.07 * float((high - low).max()) or 1.0
+    return low - room, high + room

@@ -12,7 +12,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.report.display import engineering, formula, labelled, length_scale, length_unit, number, plain, unit_text
 from satsym.report.plots import curves, legend, series, style, surroundings
-from satsym.report.plots.reading import BURIED, FURTHEST, ROUNDING, within_reach
+from satsym.report.plots.reading import BURIED, ROUNDING, box
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.surroundings import NOTHING, Surroundings
 from satsym.report.plots.views import View, from_aside, views
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 ARROWS = 32
 MOST_VIEWS = 4
-FREE = 1.5
-"""Size of the uncontrolled motion, in widths of the path, up to which all of it is shown."""
 LENGTH = 0.4
 """Largest length of the axes of space, relative to half the size of the picture."""
 LONGEST_ARROW = 0.13
@@ -74,6 +72,11 @@ class Orbit:
         states = scene.spec.states
         if (about := curves.polar(states)) is not None:
             return cls._of_polar(scene, *about)
+        if swept := curves.Swept.of(scene.instance.model, scene.nodes, scene.x, scene.u, scene.instance.parameters):
+            ways, unit = ("$x$", "$y$"), states[swept.distance].unit
+            around = Surroundings(other=swept.circle)
+            known = swept.path, None, None, swept.thrust, None, None, False
+            return cls(unit, ways, *known, by_states=True, around=around, thrusts=_thrusts(scene))
         found = curves.places(states, scene.rated)
         if not found:
             return None
@@ -325,30 +328,6 @@ def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
         return False
     furthest = np.nanmax(np.abs([seen.along, seen.radial]))
     return bool(0.0 < furthest < NEIGHBOURHOOD * np.linalg.norm(reference, axis=0).max())
-
-
-def box(curve: Array, others: list[Array], free: Array | None = None) -> tuple[Array, Array]:
-    """Return corners around a curve; other curves widen them as long as the curve stays readable.
-
-    Parameters
-    ----------
-    curve, others
-        Shape (2 or 3, N) each.
-    free
-        The uncontrolled motion, of which less is shown.
-    """
-    low, high = np.nanmin(curve, axis=1), np.nanmax(curve, axis=1)
-    width = float((high - low).max()) or np.inf
-    core = (low, high)
-    beside = [(other, FURTHEST) for other in others] + ([] if free is None else [(free, FREE)])
-    for other, furthest in beside:
-        if np.isfinite(other).any(axis=1).all():
-            below, above = core[0] - np.nanmin(other, axis=1), np.nanmax(other, axis=1) - core[1]
-            low = np.minimum(low, core[0] - [within_reach(excess, width, furthest) for excess in below])
-            high = np.maximum(high, core[1] + [within_reach(excess, width, furthest) for excess in above])
-    room = 0.07 * (high - low)
-    room[room == 0.0] = 0.07 * float((high - low).max()) or 1.0
-    return low - room, high + room
 
 
 def _once(curve: Array) -> Array:
