@@ -171,6 +171,30 @@ def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text:
     assert "#pause:checked ~ svg .body { animation-play-state: paused; }" in text
 
 
+def test_what_is_too_near_its_reference_to_be_told_from_it_moves_as_it_is_seen_from_there() -> None:
+    """Five kilometres above a geostationary slot are a tenth of a pixel of its orbit."""
+    scene = Scene.of(solve(instance.load("return-to-geo")))
+    drawn = str(motion(scene, load("en")))
+    assert "seen from the reference point" in drawn
+    path = re.search(r'<path d="M([^"]*)" class="path">', drawn)
+    cross = re.search(r'<path d="M([-.\d]+) ([-.\d]+)h12', drawn)
+    assert path is not None
+    assert cross is not None
+    (x, y), *_, last = [tuple(map(float, place.split())) for place in path[1].split("L")]
+    origin = float(cross[1]) + 6.0, float(cross[2])
+    np.testing.assert_allclose(last, origin, atol=0.06)
+    ahead, above = scene.x[2, 0] * scene.x[0, 0], 5.0
+    np.testing.assert_allclose((x - origin[0]) / (origin[1] - y), ahead / above, rtol=0.01)
+
+
+@pytest.mark.slow
+def test_burns_are_drawn_in_pieces() -> None:
+    scene = Scene.of(solve(instance.load("transfer-fuel")))
+    burns = re.search(r'<path d="([^"]*)" class="burns">', str(motion(scene, load("en"))))
+    assert burns is not None
+    assert burns[1].count("M") == 3
+
+
 def test_a_body_that_turns_is_shown_turn_by_turn_and_stands_at_its_end_without_motion() -> None:
     """Its third axis is where the rotation has it, seen from aside."""
     drawn = str(motion(Scene.of(simulate(instance.load("gravity-gradient"), None)), load("en")))

@@ -37,6 +37,8 @@ _SIZED = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")
 OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
 """Steps that are unfolded at first."""
 
+_HEADS = ("words", "symbol"), ("words", "name"), ("words", "unit"), ("page", "value"), ("words", "meaning")
+
 DEFINED = "declared"
 """The beginning of the addresses of definitions, as in documents."""
 
@@ -127,21 +129,22 @@ class Derived:
             yield self._equation(address, in_lines(latex, typeset.terms(one.value)), 0.0)
 
     def _quantities(self) -> Markup:
+        """A row for each quantity; a unit or a value that none of them has takes no column."""
         model, texts = self._derivation.model, self._texts
-        heads = [texts.get("words", key) for key in ("symbol", "name", "unit")]
-        heads += [texts.get("page", "value"), texts.get("words", "meaning")]
-        rows = [tag("tr", *(tag("th", name, scope="col") for name in heads))]
-        for variables in (model.states, model.controls, model.parameters):
-            rows += [self._quantity(v) for v in variables]
-        return scrolled(tag("table", *rows, class_="facts"))
+        heads = [tag("th", texts.get(*key), scope="col") for key in _HEADS]
+        rows = [self._quantity(v) for vs in (model.states, model.controls, model.parameters) for v in vs]
+        kept = [k for k, column in enumerate(zip(*(told for told, _ in rows), strict=True)) if any(column)]
+        body = (tag("tr", *(cells[k] for k in kept)) for _, cells in rows)
+        return scrolled(tag("table", tag("tr", *(heads[k] for k in kept)), *body, class_="facts"))
 
-    def _quantity(self, v: Variable) -> Markup:
+    def _quantity(self, v: Variable) -> tuple[tuple[bool, ...], tuple[Markup, ...]]:
+        """Whether each cell says something, and the cells."""
         value, said = self._values.get(v.symbol), self._texts.phrase(v.meaning)
-        return tag(
-            "tr",
+        unit = unit_text(self._units.get(v.symbol, v.unit))
+        return (True, True, bool(unit), value is not None, True), (
             tag("td", math(v.latex)),
             tag("th", tag("code", v.symbol), scope="row"),
-            tag("td", unit_text(self._units.get(v.symbol, v.unit))),
+            tag("td", unit),
             tag("td", "" if value is None else decimal(figure(value, 10)), class_="number"),
             tag("td", said, lang=self._texts.language if self._texts.find(PHRASES, v.meaning) else "en"),
         )

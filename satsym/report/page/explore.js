@@ -17,15 +17,21 @@
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const ink = css("--ink"), faint = css("--faint"), line = css("--line");
   const plain = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
-  const SECONDS = 12, SIDE = 380, ROW = 150, GAP = 0.045;
-  const BLUE = "#0072B2", SKY = "#56B4E9", VERMILION = "#D55E00", GREEN = "#009E73";
+  const SECONDS = 12, ROW = 150, GAP = 0.045;
+  const BLUE = css("--blue"), VERMILION = css("--vermilion"), GREEN = css("--green"), PURPLE = css("--purple"), GLOBE = css("--globe");
+  // colours that the data have are those of printed pictures; a dark page has others
+  const PAINTS = { "#0072b2": BLUE, "#d55e00": VERMILION, "#009e73": GREEN, "#a6508a": PURPLE };
+  const paint = (colour) => PAINTS[colour.toLowerCase()] ?? colour;
   let current = answers[begin], time = current.t[0], running = 0, updates = [];
 
+  const RAISED = Object.fromEntries([..."-0123456789"].map((sign, k) => [sign, "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"[k]]));
   /** A number with six digits; what is nothing but rounding beside a size is zero. */
   const number = (value, size = 0) => {
     if (value === null || !Number.isFinite(value)) return "–";
     if (Math.abs(value) < 1e-9 * size) return "0";
-    return String(Number(value.toPrecision(6))).replace("-", "−").replace(".", decimal);
+    const [digits, power] = String(Number(value.toPrecision(6))).split("e");
+    const raised = (power ?? "").replace(/./g, (sign) => RAISED[sign] ?? "");
+    return digits.replace("-", "−").replace(".", decimal) + (power ? ` × 10${raised}` : "");
   };
 
   /** Place of a time among the nodes: the node before, and the share of the way to the next. */
@@ -57,8 +63,12 @@
   const dot = (rows, name, colour, symbol, size) =>
     curve(rows, name, { marker: { color: colour, size, symbol, line: { color: ink, width: 1 } } }, "markers");
 
+  /** Height of what moves: one picture alone has more room than two beside each other. */
+  const sideOf = () => (current.scenes.length > 1 ? 380 : Math.min(520, Math.max(380, 0.6 * scenesHome.clientWidth)));
+
   /** The path in a plane or in space, and what moves on it. */
   const drawPath = (home, scene) => {
+    const side = sideOf();
     const deep = scene.kind === "space";
     const zero = scene.path.map(() => [0]);
     const traces = [];
@@ -101,13 +111,13 @@
     const names = scene.labels, range = (i) => [scene.low[i], scene.high[i]];
     const disc = scene.radius && !deep ? [{
       type: "circle", x0: -scene.radius, x1: scene.radius, y0: -scene.radius, y1: scene.radius,
-      fillcolor: "rgba(86,180,233,.3)", line: { color: faint, width: 1 }, layer: "below",
+      fillcolor: GLOBE, line: { color: faint, width: 1 }, layer: "below",
     }] : [];
     const space = (i) => axis({ title: { text: names[i] }, range: range(i), showbackground: false });
     Plotly.newPlot(home, traces, layout(deep
-      ? { height: SIDE + 60, margin: { l: 0, r: 0, t: 6, b: 0 }, scene: { xaxis: space(0), yaxis: space(1), zaxis: space(2), aspectmode: "cube" } }
+      ? { height: side + 60, margin: { l: 0, r: 0, t: 6, b: 0 }, scene: { xaxis: space(0), yaxis: space(1), zaxis: space(2), aspectmode: "cube" } }
       : {
-          height: SIDE, margin: { l: 60, r: 10, t: 8, b: 44 }, shapes: disc,
+          height: side, margin: { l: 60, r: 10, t: 8, b: 44 }, shapes: disc,
           xaxis: axis({ title: { text: names[0] }, range: range(0), constrain: "domain" }),
           yaxis: axis({ title: { text: names[1] }, range: range(1), ...(scene.free_aspect ? {} : { scaleanchor: "x", constrain: "domain" }) }),
         }), plain);
@@ -131,7 +141,7 @@
       }
       x.push(rows[0]); y.push(rows[1]); z.push(rows[2]);
     }
-    return { type: "surface", x, y, z, showscale: false, hoverinfo: "skip", opacity: 0.9, colorscale: [[0, "#9DB8CF"], [1, "#9DB8CF"]] };
+    return { type: "surface", x, y, z, showscale: false, hoverinfo: "skip", opacity: 0.9, colorscale: [[0, GLOBE], [1, GLOBE]] };
   };
 
   /** A box with its axes, as it is turned, and the torque in its axes. */
@@ -155,14 +165,14 @@
     const looks = [
       { line: { color: ink, width: 4 } },
       ...colours.map((colour) => ({ line: { color: colour, width: 6 } })),
-      { line: { color: "#A6508A", width: 9 } },
+      { line: { color: PURPLE, width: 9 } },
     ];
     const names = [words.body_called, "1", "2", "3", words.torque];
     const traces = bodies.map((body, k) => ({ ...curve(body(), names[k], looks[k]), hoverinfo: "name" }));
     [0, 1, 2].forEach((i) => traces.push(curve([0, 1, 2].map((j) => [0, i === j ? 1.4 : 0]), words.fixed, { line: { color: faint, width: 2, dash: "dot" } })));
     const space = { range: [-1.4, 1.4], showbackground: false, showticklabels: false, title: { text: "" }, showgrid: false, zeroline: false };
     Plotly.newPlot(home, traces, layout({
-      height: SIDE + 20, margin: { l: 0, r: 0, t: 6, b: 0 },
+      height: sideOf() + 20, margin: { l: 0, r: 0, t: 6, b: 0 },
       scene: { xaxis: space, yaxis: space, zaxis: space, aspectmode: "cube", camera: { eye: { x: 1.05, y: 0.75, z: 0.6 } } },
     }), plain);
     updates.push(() => {
@@ -187,19 +197,19 @@
       const top = 1 - r / column.length, bottom = 1 - (r + 1) / column.length;
       const last = r === column.length - 1;
       axes[`xaxis${id}`] = axis({ domain: from, anchor: `y${id}`, range: span, ...(k > 1 ? { matches: "x" } : {}), showticklabels: last, title: last ? { text: current.time, standoff: 4 } : undefined });
-      axes[`yaxis${id}`] = axis({ domain: [bottom + GAP / Math.max(1, column.length / 4), top - 0.012], anchor: `x${id}`, range: [panel.low, panel.high], title: { text: panel.label, font: { size: 11 } }, nticks: 4 });
+      axes[`yaxis${id}`] = axis({ domain: [bottom + GAP / Math.max(1, column.length / 4), top - 0.012], anchor: `x${id}`, range: [panel.low, panel.high], title: { text: panel.label, font: { size: 12 }, standoff: 6 }, nticks: 6 });
       const on = { xaxis: `x${id}`, yaxis: `y${id}` };
       for (const [key, look] of [["free", { color: faint, width: 1 }], ["reference", { color: ink, width: 1, dash: "dash" }]])
         if (panel[key]) traces.push({ ...on, x: current.t, y: panel[key], mode: "lines", line: look, hoverinfo: "skip" });
       for (const key of ["lower", "upper"])
         if (panel[key] !== undefined) shapes.push({ type: "rect", xref: `x${id}`, yref: `y${id}`, x0: span[0], x1: span[1], y0: panel[key], y1: key === "lower" ? panel.low : panel.high, fillcolor: "rgba(138,138,138,.2)", line: { width: 0 }, layer: "below" });
-      for (const mark of panel.marks) shapes.push({ type: "line", xref: `x${id}`, yref: `y${id}`, x0: mark, x1: mark, y0: panel.low, y1: panel.high, line: { color: panel.colour, width: 1, dash: "dot" } });
+      for (const mark of panel.marks) shapes.push({ type: "line", xref: `x${id}`, yref: `y${id}`, x0: mark, x1: mark, y0: panel.low, y1: panel.high, line: { color: paint(panel.colour), width: 1, dash: "dot" } });
       if (panel.target !== undefined) traces.push({ ...on, x: [span[1]], y: [panel.target], mode: "markers", marker: { color: "rgba(0,0,0,0)", size: 11, line: { color: ink, width: 1.2 } }, hoverinfo: "skip", cliponaxis: false });
-      traces.push({ ...on, x: current.t, y: panel.values, mode: "lines", line: { color: panel.colour, width: 2 }, name: panel.meaning, hovertemplate: `${panel.label}: %{y:.6g}<br>${current.time}: %{x:.6g}<extra>${panel.meaning}</extra>` });
+      traces.push({ ...on, x: current.t, y: panel.values, mode: "lines", line: { color: paint(panel.colour), width: 2 }, name: panel.meaning, hovertemplate: `${panel.label}: %{y:.6g}<br>${current.time}: %{x:.6g}<extra>${panel.meaning}</extra>` });
       cursors.push({ index: traces.length, panel });
-      traces.push({ ...on, x: [0, 0, 0], y: [panel.low, 0, panel.high], mode: "lines+markers", line: { color: faint, width: 1 }, marker: { size: [0, 8, 0], color: panel.colour }, hoverinfo: "skip" });
+      traces.push({ ...on, x: [0, 0, 0], y: [panel.low, 0, panel.high], mode: "lines+markers", line: { color: faint, width: 1 }, marker: { size: [0, 8, 0], color: paint(panel.colour) }, hoverinfo: "skip" });
     }));
-    Plotly.newPlot(panelsHome, traces, layout({ height: 70 + ROW * rows, margin: { l: 70, r: 12, t: 8, b: 44 }, hovermode: "x", shapes, annotations, ...axes }), plain);
+    Plotly.newPlot(panelsHome, traces, layout({ height: 70 + ROW * rows, margin: { l: 92, r: 12, t: 8, b: 44 }, hovermode: "x", shapes, annotations, ...axes }), plain);
     panelsHome.removeAllListeners?.("plotly_hover");
     panelsHome.on("plotly_hover", (event) => { stop(); set(Number(event.points[0].x)); });
     updates.push(() => {

@@ -158,8 +158,9 @@ def _path(scene: Scene, orbit: Orbit, kept: NDArray[np.intp]) -> Data:
     labels = orbit.labels if spatial else orbit.views[0].labels
     path = axes @ orbit.path
     around = orbit.around
-    beside = [axes @ c for c in (orbit.reference, orbit.free, around.other) if c is not None]
-    low, high = box(path, [*beside, *([np.zeros((len(path), 1))] if orbit.central else [])])
+    beside = [axes @ c for c in (orbit.reference, around.other, orbit.target) if c is not None]
+    free = None if orbit.free is None else axes @ orbit.free
+    low, high = box(path, [*beside, *([np.zeros((len(path), 1))] if orbit.central else [])], free)
     furthest = float(np.abs([low, high]).max())
     factor, unit = length_scale(orbit.unit, furthest)
     measure = engineering(unit, furthest / factor)

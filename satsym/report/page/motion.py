@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
@@ -21,6 +23,8 @@ from satsym.report.texts import Texts
 SIDE = 400.0
 """Side of the picture, in its own units."""
 FRAMES = 120
+UNSEEN = 0.02
+"""Largest distance from the reference, relative to the orbit, that is a few pixels of the picture at most."""
 TURNS, SECONDS = 40, 10.0
 """Number of pictures of a turning body, and the seconds of all of them, as in the style sheet."""
 BODY = 0.55, 0.4, 0.28
@@ -35,6 +39,11 @@ EDGES = [
 ]
 """Edges of the box, shape (3, 2) each."""
 
+GRID = 81
+"""Points on each side of a grid on which it is known where the motion must not be."""
+MARKED = {"target": "9", "passed": "5"}
+"""Radius of the marks of the final condition, and of points on the way."""
+
 Placing: TypeAlias = Callable[[Array], Array]
 """A function from points of a plane to points of the picture, shapes (2, N)."""
 
@@ -45,30 +54,76 @@ def motion(scene: Scene, texts: Texts) -> Markup:
     if orbit is None:
         attitude = Attitude.of(scene)
         return Markup() if attitude is None else _turning(scene, attitude, texts)
+    if (drawn := _from_reference(scene, orbit, texts)) is not None:
+        return drawn
     view, known = orbit.views[0].axes, np.isfinite(orbit.path).all(axis=0)
     around = orbit.around
     curves = {"reference": orbit.reference, "free": orbit.free, "path": orbit.path}
     seen = {name: view @ curve[:, known] for name, curve in curves.items() if curve is not None}
     if around.other is not None:
         seen["other"] = view @ around.other
-    origin = [np.zeros((2, 1))] if orbit.central else []
-    to = _placing(
-        *box(seen["path"], [*origin, *(seen[name] for name in ("reference", "free", "other") if name in seen)])
-    )
-    drawn = {name: to(curve) for name, curve in seen.items()}
-    moving: list[str] = [name for name in ("reference", "path") if name in drawn]
-    evenly: dict[str, Array] = {name: _evenly(scene.nodes[known], drawn[name]) for name in moving}
+    if around.burns is not None:
+        seen["burns"] = view @ around.burns[:, known]
+    moving: dict[str, tuple[Array, Array]] = {}
+    moving |= {name: (scene.nodes[known], seen[name]) for name in ("reference", "path") if name in seen}
     if around.moving is not None:
-        even = np.linspace(scene.nodes[0], scene.nodes[-1], around.moving.shape[1])
-        evenly["met"] = _evenly(even, to(view @ around.moving))
+        moving["met"] = np.linspace(scene.nodes[0], scene.nodes[-1], around.moving.shape[1]), view @ around.moving
+    points = {"target": orbit.target, "passed": around.passed}
+    marked = {name: view @ places for name, places in points.items() if places is not None}
+    walls = [one.in_plane for one in around.forbidden if one.in_plane is not None and view.shape == (2, 2)]
+    fields = [lambda seen, wall=wall: wall(view.T @ seen) for wall in walls]
+    inside = _moving(seen, moving, orbit.central, marked, fields)
+    return _figure(scene, inside, texts, "motion_inside" if fields else "motion_about")
+
+
+def _from_reference(scene: Scene, orbit: Orbit, texts: Texts) -> Markup | None:
+    """The path as it is seen from the reference, where in space the two could not be told apart."""
+    if orbit.relative is None or orbit.reference is None:
+        return None
+    seen = {"free": orbit.free_relative, "path": orbit.relative}
+    curves = {name: np.vstack([one.along, one.radial]) for name, one in seen.items() if one is not None}
+    known = np.isfinite(curves["path"]).all(axis=0)
+    curves = {name: curve[:, known] for name, curve in curves.items()}
+    if np.abs(curves["path"]).max() >= UNSEEN * np.linalg.norm(orbit.reference, axis=0).max():
+        return None
+    inside = _moving(curves, {"path": (scene.nodes[known], curves["path"])}, True)
+    return _figure(scene, inside, texts, "motion_relative")
+
+
+def _moving(
+    seen: Mapping[str, Array],
+    moving: Mapping[str, tuple[Array, Array]],
+    origin: bool,
+    marked: Mapping[str, Array] = MappingProxyType({}),
+    fields: Sequence[Placing] = (),
+) -> list[Markup]:
+    """Curves, a cross at the origin if that is wanted, and a disc for each that moves, given with its times.
+
+    Parameters
+    ----------
+    marked
+        Points that do not move, shape (2, N).
+    fields
+        From places in the plane to what is positive where the motion must not be.
+    """
+    centre = [np.zeros((2, 1))] if origin else []
+    beside = [*centre, *marked.values(), *(seen[name] for name in ("reference", "other") if name in seen)]
+    low, high = box(seen["path"], beside, seen.get("free"))
+    to = _placing(low, high)
+    evenly = {name: _evenly(times, to(curve)) for name, (times, curve) in moving.items()}
     x, y = to(np.zeros((2, 1)))[:, 0]
-    inside = [
+    return [
         tag("style", *(_keyframes(name, places) for name, places in evenly.items())),
-        *(tag("path", d="M" + "L".join(_points(curve)), class_=name) for name, curve in drawn.items()),
-        *([tag("path", d=f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12", class_="origin")] if orbit.central else []),
+        *(tag("path", d=_region(field, low, high, to), class_="forbidden") for field in fields),
+        *(tag("path", d=_line(to(curve)), class_=name) for name, curve in seen.items()),
+        *([tag("path", d=f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12", class_="origin")] if origin else []),
+        *(
+            tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r=MARKED[name], class_=name)
+            for name, places in marked.items()
+            for x, y in to(places).T
+        ),
         *(_body(name, places) for name, places in evenly.items()),
     ]
-    return _figure(scene, inside, texts, "motion_about")
 
 
 def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more: str) -> Markup:
@@ -119,9 +174,27 @@ def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
     return _figure(scene, inside, texts, about, **({} if about == "turning_about" else {"times": magnified}))
 
 
+def _region(field: Placing, low: Array, high: Array, to: Placing) -> str:
+    """Where a field is positive, as far as the picture goes."""
+    from contourpy import FillType, contour_generator
+
+    half, middle = 0.5 * float((high - low).max()), 0.5 * (low + high)
+    across, up = (np.linspace(centre - half, centre + half, GRID) for centre in middle)
+    values = field(np.array(np.meshgrid(across, up)).reshape(2, -1)).reshape(GRID, GRID)
+    drawn = contour_generator(across, up, values, fill_type=FillType.OuterOffset).filled(0.0, np.inf)
+    rings = (points[begin:end] for points, offsets in zip(*drawn, strict=True) for begin, end in pairwise(offsets))
+    return "".join(f"{_line(to(ring.T))}Z" for ring in rings)
+
+
 def _line(points: Array) -> str:
-    """Return a path through points of the picture."""
-    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.T)
+    """A path through points of the picture, in pieces where some are not known; none twice in turn."""
+    found, before = "", ""
+    for x, y in points.T:
+        place = f"{x:.1f} {y:.1f}" if np.isfinite(x) and np.isfinite(y) else ""
+        if place and place != before:
+            found += ("L" if before else "M") + place
+        before = place
+    return found
 
 
 def _placing(low: Array, high: Array) -> Placing:
@@ -136,12 +209,6 @@ def _evenly(times: Array, curve: Array) -> Array:
     """Return places at evenly spaced times, shape (2, FRAMES + 1)."""
     ticks = np.linspace(times[0], times[-1], FRAMES + 1)
     return np.vstack([np.interp(ticks, times, row) for row in curve])
-
-
-def _points(curve: Array) -> list[str]:
-    """Return coordinates as text, without repeated points."""
-    found = [f"{x:.1f} {y:.1f}" for x, y in curve.T]
-    return [one for k, one in enumerate(found) if k == 0 or one != found[k - 1]]
 
 
 def _keyframes(name: str, places: Array) -> Markup:

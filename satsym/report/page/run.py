@@ -217,11 +217,11 @@ _ABOUT = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _COLOURS = {
     **dict.fromkeys((style.INK.lower(), "#000000"), "ink"),
     **dict.fromkeys((style.SOFT.lower(), style.GREY.lower(), "#777777", "#9a9a9a"), "faint"),
-    **dict.fromkeys((style.PALE_GREY.lower(), "#c4c4c4", "#c8c8c8"), "line"),
+    style.PALE_GREY.lower(): "line",
     "#ffffff": "card",
     **{
         getattr(style, name).lower(): name.lower()
-        for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "ALARM", "GLOBE", "RIM")
+        for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "HATCH", "ALARM", "GLOBE", "RIM")
     },
 }
 """Colours of a picture with the page's colours that replace them on light or dark grounds."""

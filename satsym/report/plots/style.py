@@ -27,6 +27,7 @@ BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
 SKY = "#56B4E9"
 """The colour of the same palette for dark grounds."""
 INK, SOFT, GREY, PALE_GREY, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
+HATCH = "#A6A6A6"
 SHADE = 0.12
 STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE
 
@@ -47,7 +48,7 @@ TARGET: dict[str, Any] = {
 }
 FORBIDDEN: dict[str, Any] = {
     "facecolor": "none",
-    "edgecolor": "#C4C4C4",
+    "edgecolor": HATCH,
     "hatch": "////",
     "linewidth": 0.0,
     "zorder": 1.2,
@@ -131,7 +132,7 @@ _RC: dict[Any, Any] = {
     "legend.fontsize": 10.0,
     "legend.handlelength": 2.2,
     "legend.columnspacing": 1.6,
-    "hatch.color": "#C8C8C8",
+    "hatch.color": HATCH,
     "hatch.linewidth": 0.7,
     "lines.solid_capstyle": "round",
     "figure.constrained_layout.h_pad": 0.06,
