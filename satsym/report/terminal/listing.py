@@ -137,7 +137,10 @@ INSTANCES = {
 """Names of instances by subject, in the order of the list."""
 
 MODELS = {
-    "Orbits": "polar_orbit polar_orbit_timed polar_orbit_ball return_above return_in_slot two_body",
+    "Orbits": (
+        "polar_orbit polar_orbit_timed polar_orbit_ball return_above return_in_slot two_body three_bodies "
+        "velocity_frame"
+    ),
     "Rendezvous": "clohessy_wiltshire hill inspection approach_cone",
     "Low-thrust transfers": "transfer_fuel transfer_time",
     "Attitude": (
