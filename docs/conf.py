@@ -33,6 +33,7 @@ toc_object_entries_show_parents = "hide"
 myst_url_schemes = ["http", "https"]
 suppress_warnings = ["myst.xref_missing"]
 html_math_renderer = "mathml"
+smartquotes = False  # options keep their two hyphens, and TOML its straight quotes
 html_theme = "furo"  # light or dark, as its reader's system is
 html_title = f"satsym {version}"
 html_static_path = ["_static"]
