@@ -43,6 +43,8 @@ class Case:
     """Times at which controls jump."""
     metrics: dict[str, float]
     """Metrics by name; empty where there is no answer."""
+    solution: Solution | None = None
+    """What a solver answered; ``None`` for a simulation."""
 
     def signal(self, name: str) -> Array:
         """Return a state, a control or a derived quantity at the nodes, by name."""
@@ -132,6 +134,7 @@ def _solved(instance: Instance) -> Case:
         u=solution.u,
         switching_times=switches,
         metrics=metrics,
+        solution=solution,
     )
 
 

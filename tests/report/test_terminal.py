@@ -12,11 +12,12 @@ import pytest
 
 from satsym import instance as instances
 from satsym import kernels
+from satsym.analysis.comparison import compare
 from satsym.report.said import message as in_words
 from satsym.report.said import spoken
 from satsym.report.terminal.arcs import in_words as arcs_in_words
 from satsym.report.terminal.certificate import _HOLDS, statement, verdict_text
-from satsym.report.terminal.comparison import _without_rounding
+from satsym.report.terminal.comparison import _without_rounding, comparison_text
 from satsym.report.terminal.listing import INSTANCES, MODELS, OTHER, by_subject
 from satsym.report.terminal.solution import _metrics, control_rows, solution_text, state_rows
 from satsym.solution import Certificate, Check, Competitors, Kind, Solution
@@ -116,6 +117,12 @@ def test_a_structure_is_put_in_words_unless_it_is_long(name: str, message: str, 
     told = arcs_in_words(made(name, ()), message)
     assert said in told
     assert re.search("residual 3e-11, (starting )?from the reachable set", told)
+
+
+def test_a_comparison_says_in_which_arcs_a_control_is_as_the_solution_does() -> None:
+    told = " ".join(comparison_text(compare([instances.load("double-integrator-time")])).split())
+    assert "arcs: lower bound, upper bound; residual" in told
+    assert "structure" not in told
 
 
 def test_every_condition_that_can_hold_is_stated_as_what_holds() -> None:

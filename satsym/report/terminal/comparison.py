@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.objects import file_of, head, plain, times, units
 from satsym.report.said import each, message, say
+from satsym.report.terminal.arcs import in_words
 from satsym.report.terminal.solution import ROUNDING
 from satsym.report.terminal.table import figure, joined, table, wrapped
 from satsym.status import Status
@@ -81,7 +82,7 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
             case.instance.name,
             message(case.how),
             message(case.verdict) if case.verdict else "" if case.answered else say("no solution"),
-            message(case.message),
+            in_words(case.solution, case.message) if case.solution else message(case.message),
         )
         for case in cases
     ]
