@@ -13,7 +13,6 @@ class Origin(str, Enum):
 
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
-    NO_MINIMUM = "straight line, because no minimum was found"
     LAST_ANSWER = "last answer"
     COLD_START = "cold start"
 
@@ -23,15 +22,13 @@ class Start:
     """An extremal of low order from which a method starts."""
 
     found: Attempt
-    """The cheapest minimum, or the last attempt, and why that is none."""
+    """A minimum, or the only extremal."""
     origin: Origin
     """From where it was found."""
     steps: int
     """Steps of all attempts."""
     bounded: bool = False
     """Whether it was looked for within the bounds at once."""
-    saddle: Attempt | None = None
-    """An extremal that is no minimum, where no minimum was found."""
 
     @property
     def named(self) -> str:
