@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
@@ -18,9 +17,8 @@ from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.chattering import NARROW, Look, at_rest, chattered, look, shows
 from satsym.solvers.switching.cold_start import homotopy
-from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
+from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
-from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.magnitudes import costs, moving
 from satsym.solvers.switching.structure import REST, Course, Guess, Structure
 from satsym.status import BadInput, Status
@@ -32,13 +30,10 @@ LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
 """Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
 motion where none was."""
 
-STEADY = 0.5
-"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
-
 
 @dataclass(frozen=True)
 class Search:
-    """The direct search, as it is asked where the motion is not linear and controls do not chatter.
+    """The direct search, as it is asked where by reachable sets nothing is found.
 
     Attributes
     ----------
@@ -65,8 +60,7 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
     progress
         Called after each step of the continuation, and each attempt at exact arcs.
     search
-        What is asked where controls do not chatter. Where the motion is not linear and it finds nothing, smoothed
-        problems may show singular arcs.
+        What is asked where controls do not chatter, and where they may for a motion to begin with.
 
     Returns
     -------
@@ -160,10 +154,9 @@ def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homoto
         return replace(exact, origin=Origin.REACH)
     if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
-    found = None if instance.model.spec.chattering else search.arcs(instance, limits)
-    if found is None and linear_motion(instance) is not None and not instance.model.spec.chattering:
-        return homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
-    return found or _smoothed(instance, search.motion(instance, limits), limits)
+    if instance.model.spec.chattering:
+        return _smoothed(instance, search.motion(instance, limits), limits)
+    return search.arcs(instance, limits) or homotopy.Stopped(Status.NOT_CONVERGED, NOT_FOUND)
 
 
 def _resting(instance: Instance) -> Guess | None:
@@ -237,37 +230,27 @@ def _there(instance: Instance) -> bool:
 def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exact | homotopy.Stopped:
     """Exact arcs whose structure is recognised in regularised extremals, less and less smoothed, or why there are none.
 
-    Structures without an arc that seems to be singular seldom lead anywhere, so they are tried once all smoothed
-    extremals show no better one.
-
     Parameters
     ----------
+    instance
+        Of which a control may chatter.
     course
         A motion near which the first smoothed extremal is looked for.
     """
     if course is None:
         return homotopy.Stopped(Status.NOT_CONVERGED, "")
-    before: Sample | None = None
     levels: list[homotopy.Smoothed] = []
-    unlikely: list[tuple[Guess, float]] = []
     looks: list[Look] = []
-    endless = bool(instance.model.spec.chattering)
-    most = homotopy.LEVELS * (2 if endless else 1)
     try:
-        for level, near in enumerate(homotopy.path(instance, course, limits, most)):
+        for level, near in enumerate(homotopy.path(instance, course, limits, 2 * homotopy.LEVELS)):
             seen = sample(near.problem, near.curve)
             levels.append(near)
-            smoothing = near.problem.control_set.smoothing
-            if endless:
-                looks.append(look(instance, near, seen))
-                if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
-                    break
-            likeliest, *plainer = _candidates(instance, seen, before)
-            exact = attempt(instance, likeliest, limits) if level <= homotopy.LEVELS else None
+            looks.append(look(instance, near, seen))
+            if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
+                break
+            exact = attempt(instance, guess(instance, seen), limits) if level <= homotopy.LEVELS else None
             if exact is not None:
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-            unlikely += [(one, smoothing) for one in plainer]
-            before = seen
+                return replace(exact, origin=Origin.SMOOTHED, smoothing=near.problem.control_set.smoothing)
             if limits.expired:
                 break
     except homotopy.Stopped as stopped:
@@ -277,34 +260,6 @@ def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exac
     else:
         message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message)
-    if shows(looks) and not limits.expired:
-        return replace(last_seen, chattering=tuple(levels))
-    for one, smoothing in unlikely:
-        if limits.expired:
-            break
-        if exact := attempt(instance, one, limits):
-            return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
     if limits.expired:
         return replace(last_seen, status=Status.TIME_LIMIT, message=f"time limit reached: {last_seen.message}")
-    return last_seen
-
-
-def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
-    """Structures of a smoothed extremal, the likeliest first."""
-    plain = guess(instance, seen)
-    free = inside(instance, seen)
-    if before is None or not free.any():
-        return [plain]
-    was = inside(instance, before)
-    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
-    spec = instance.model.spec
-    joined = [name not in spec.chattering for name in spec.control_names]
-    singular = free & np.array(steady)[:, None] & np.array(joined)[:, None]
-    if not singular.any():
-        return [plain]
-    return [guess(instance, seen, singular), plain]
-
-
-def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
-    """How long a condition holds along a regularised extremal that was sampled."""
-    return float(np.trapezoid(where.astype(float), seen.times))
+    return replace(last_seen, chattering=tuple(levels)) if shows(looks) else last_seen

@@ -11,16 +11,12 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.switching.magnitudes import effective, moving
+from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs
 
 SAMPLES = 12
 """Points in each interval of a mesh at which switching functions are looked at."""
-
-INSIDE = 1e-6
-"""Share of the width of its range by which a control is off both bounds, where it may be singular: bounds are met
-exactly, and on its way to an equilibrium a singular control may come as near to one as it likes."""
 
 FAINT_FUNCTION = 1e-9
 """Share of its size at which a switching function is as good as none."""
@@ -87,23 +83,6 @@ def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDA
     if low >= 0.0:
         return np.where(found == LOWER, REST, found)
     return np.where(found == UPPER, REST, found) if high <= 0.0 else found
-
-
-def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
-    """Where controls without a weight of their magnitude are off both bounds for long, shape (m, N)."""
-    low, high = instance.control_set.box
-    off = INSIDE * (high - low)
-    plain = ~np.array(moving(instance))[:, None] & (seen.weight == 0.0)
-    free = (seen.u > low + off) & (seen.u < high - off) & plain
-    least = LONG_ARC * (seen.times[-1] - seen.times[0])
-    for row, sigma in zip(free, seen.sigma, strict=True):
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(int), [0]])))
-        for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
-            if seen.times[last] - seen.times[first] < least:
-                row[first : last + 1] = False
-            elif seen.times[-1] - seen.times[last] < least and abs(sigma[-1]) <= FAINT_FUNCTION * np.abs(sigma).max():
-                row[last:] = True  # at free ends costates vanish, and smoothing alone makes an arc of that
-    return np.asarray(free)
 
 
 def _passages(
