@@ -9,7 +9,10 @@ import pytest
 from satsym import auditing
 from satsym.auditing import audit
 from satsym.auditing.document import displays
+from satsym.auditing.latex.grammar import read
+from satsym.auditing.latex.tokens import Unread, tokens
 from satsym.cli import main
+from satsym.formula.writing import written
 
 PAPER = r"""
 \documentclass{article}
@@ -146,6 +149,49 @@ def test_what_is_no_document_is_told_in_one_line(
     err = capsys.readouterr().err
     assert reason in err
     assert err.count("\n") == 1
+
+
+MACROS = [
+    (r"\newcommand{\v}[2][x]{#1_{#2}}", r"\v{2} = \v[y]{3}", "x2 = y3"),
+    (
+        r"\newcommand*\pd[3][]{\frac{\partial^{#1} #2}{\partial #3^{#1}}}",
+        r"\pd{f}{x} = \pd[2]{f}{x}",
+        "diff(f, x) = diff(diff(f, x), x)",
+    ),
+    (r"\providecommand*{\R}{R}", r"\R = 3", "R = 3"),
+    (r"\def\x#1#2{\dot #1_#2}", r"\x{a}{b} = 3", "d_a_b = 3"),
+    (r"\let\eps\varepsilon \let\E=\eta", r"\eps = \E", "varepsilon = eta"),
+    (r"\DeclareMathOperator*{\argmin}{arg\,min}", r"u = \argmin_u J", "u = argmin(J, u)"),
+    (r"\DeclareMathOperator{\sn}{sn}", r"\sn(u) = 3", "sn(u) = 3"),
+    (
+        r"\DeclarePairedDelimiter{\size}{\lvert}{\rvert}",
+        r"\size{x} = \size*{y} + \size[\Big]{z}",
+        "abs(x) = abs(y) + abs(z)",
+    ),
+    (r"\NewDocumentCommand{\q}{O{a} m}{#1_{#2}}", r"\q{b} = \q[c]{b}", "a_b = c_b"),
+    (r"\def\f(#1,#2){#1 #2}", r"\f(a,b) = 3", r"the definition of \f is not supported"),
+    (r"\NewDocumentCommand{\q}{m o}{#1}", r"\q{b} = 3", r"the definition of \q is not supported"),
+]
+
+
+@pytest.mark.parametrize(("definition", "formula", "meant"), MACROS)
+def test_a_macro_is_read_as_it_is_defined_or_refused_where_it_stands(
+    tmp_path: Path, definition: str, formula: str, meant: str
+) -> None:
+    path = tmp_path / "paper.tex"
+    path.write_text(f"{definition}\n\n\\[ {formula} \\]\n")
+    source = displays.read(path)
+    (display,) = displays.displays(source)
+    assert display.place.endswith(":3")
+    assert _understood(source, display) == (meant, display.place)
+
+
+def _understood(source: displays.Source, display: displays.Display) -> tuple[str, str]:
+    try:
+        found = read(tokens(display.text, source.macros, display.start), display.text, display.start)
+    except Unread as error:
+        return error.message, source.place(error.at)
+    return "; ".join(map(written, found.statements)), display.place
 
 
 HOSTILE = [

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from satsym.auditing.latex.tokens import Macro, Unread, tokens
+from satsym.auditing.latex.tokens import UNKNOWN, Macro, Unread, tokens
 from satsym.auditing.latex.words import ACCENTS, KEPT_GROUPS, MARKS, STYLES
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -37,9 +37,14 @@ _SECTION = re.compile(
     r"\\(chapter|section|subsection)(\*?)\s*\{([^{}\n]{0,200})|^(#{1,3}) +([^\n]{1,200})$", re.MULTILINE
 )
 _MACRO = re.compile(
-    r"\\(?:(?:re)?newcommand|providecommand|DeclareRobustCommand)\*?\s*\{?\\(?P<name>[A-Za-z]+)\}?\s*(?:\[(?P<count>[0-9])\])?"
-    r"\s*(?P<default>\[)?|\\def\s*\\(?P<def>[A-Za-z]+)(?P<args>(?:#[0-9])*)\s*(?=\{)"
-    r"|\\DeclareMathOperator\*?\s*\{\\(?P<operator>[A-Za-z]+)\}"
+    r"\\(?:(?:re)?newcommand|providecommand|DeclareRobustCommand)\s*\*?\s*\{?\s*\\(?P<name>[A-Za-z@]+)\s*\}?"
+    r"\s*(?:\[(?P<count>[0-9])\])?\s*(?:\[(?P<default>[^\[\]\n]*)\])?"
+    r"|\\[gex]?def\s*\\(?P<def>[A-Za-z@]+)(?P<args>[^{}\\\n]*)(?=\{)"
+    r"|\\DeclareMathOperator\s*\*?\s*\{?\s*\\(?P<operator>[A-Za-z@]+)\s*\}?"
+    r"|\\let\s*\\(?P<let>[A-Za-z@]+)\s*=?\s*(?P<same>\\[A-Za-z@]+|[A-Za-z])"
+    r"|\\DeclarePairedDelimiter\s*\{?\s*\\(?P<pair>[A-Za-z@]+)\s*\}?\s*\{(?P<left>[^{}]*)\}\s*\{(?P<right>[^{}]*)\}"
+    r"|\\(?:New|Renew|Provide|Declare)DocumentCommand\s*\{?\s*\\(?P<document>[A-Za-z@]+)\s*\}?"
+    r"\s*\{(?P<kinds>(?:[^{}]|\{[^{}]*\})*)\}"
 )
 _PACKAGES = re.compile(r"\\usepackage\s*(?:\[[^\]\n]{0,200}\])?\s*\{([^{}\n]{1,300})\}")
 _KNOWN = frozenset((*ACCENTS, *MARKS, *STYLES, *KEPT_GROUPS))
@@ -258,25 +263,47 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None) -> str:
-    """Enter the macros of a text, and give the text without them; what has an optional argument stays unknown."""
+    """Enter the macros of a text, and give the text without them; one that is not understood is refused where used."""
     for match in _MACRO.finditer(text):
-        name = match["name"] or match["def"] or match["operator"]
-        opening = text.find("{", match.end())
-        if name in _KNOWN or match["default"] or opening < 0 or text[match.end() : opening].strip():
-            continue
-        closing = _closing(text, opening)
-        body = text[opening + 1 : closing]
-        if match["operator"]:
-            word = _SET.sub(lambda upright: upright[1], body)
-            body = rf"\operatorname{{{word}}}"
-        count = int(match["count"] or len(match["args"] or "") // 2)
-        try:
-            source.macros[name] = Macro(count, tuple(tokens(body, None, opening + 1)))
-        except Unread as error:
-            if place:  # a package of the document's own may hold anything
-                source.unread.append((place(match.start()), f"the macro \\{name}: {error.message}"))
-        text = text[:opening] + " " * (closing + 1 - opening) + text[closing + 1 :]
+        name = next(match[kind] for kind in ("name", "def", "operator", "let", "pair", "document") if match[kind])
+        end = match.end()
+        if not match["let"] and not match["pair"]:
+            opening = text.find("{", match.end())
+            if opening < 0 or text[match.end() : opening].strip():
+                source.macros.setdefault(name, UNKNOWN)
+                continue
+            end = _closing(text, opening) + 1
+        if name not in _KNOWN:
+            try:
+                source.macros[name] = _macro(match, text[match.end() : end].strip(), match.end())
+            except Unread as error:
+                source.macros[name] = UNKNOWN
+                if place:  # a package of the document's own may hold anything
+                    source.unread.append((place(match.start()), f"the macro \\{name}: {error.message}"))
+        text = text[: match.start()] + re.sub(r"[^\n]", " ", text[match.start() : end]) + text[end:]
     return text
+
+
+def _macro(match: re.Match[str], group: str, at: int) -> Macro:
+    """What a definition makes of a macro."""
+    body, count, default = group[1:-1], int(match["count"] or 0), match["default"]
+    if match["let"]:
+        body = match["same"]
+    elif match["pair"]:
+        body, count, default = f"{match['left']} #2 {match['right']}", 2, ""
+    elif match["operator"]:
+        body = rf"\operatorname{{{_SET.sub(lambda upright: upright[1], body)}}}"
+    elif match["document"]:
+        kinds = re.fullmatch(r"\s*(?:O\s*\{([^{}]*)\})?([\sm]*)", match["kinds"])
+        if kinds is None:
+            return UNKNOWN
+        count, default = kinds[2].count("m") + (kinds[1] is not None), kinds[1]
+    elif match["def"]:
+        count = len(match["args"].split("#")) - 1
+        if match["args"].strip() != "".join(f"#{k + 1}" for k in range(count)):
+            return UNKNOWN
+    given = None if default is None else tuple(tokens(default, None, at))
+    return Macro(count, tuple(tokens(body, None, at)), given, starred=bool(match["pair"]))
 
 
 def _closing(text: str, opening: int) -> int:

@@ -148,9 +148,9 @@ class QuotientCursor(LetterCursor):
         if len(rest) > 1 and rest[0].text == "^":
             end = group_end(rest, 1) if rest[1].kind == "open" else 2
             digits = "".join(t.text for t in rest[1:end] if t.kind == "number")
-            if not digits:
+            if not digits and end != 3:  # as a macro leaves it that may have an order
                 return None
-            order, rest = int(digits), rest[end:]
+            order, rest = int(digits or 1), rest[end:]
         return order, rest, above[0].text == "partial"
 
     def _differentials(self, below: list[Token]) -> list[Letter] | None:
@@ -170,7 +170,7 @@ class QuotientCursor(LetterCursor):
                 )
             if inner._is("^"):
                 inner._i += 1
-                script = inner._script()
+                script = inner._script() or [Token("number", "1", below[0].at)]
                 digits = "".join(t.text for t in script if t.kind == "number")
                 if len(script) == 1 and not digits and (raised := cleaned(inner._said(script))):  # an index above
                     letter = replace(letter, marks=(*letter.marks, f"upper_{raised}"))

@@ -43,12 +43,20 @@ class Token:
 
 @dataclass(frozen=True)
 class Macro:
-    """A macro of the document's own: how many arguments it takes, and what stands for it."""
+    """A macro of the document's own: how many arguments it takes, and what stands for it.
+
+    The first argument is optional, in square brackets, where it has a ``default``; a star behind a macro that is
+    ``starred`` changes sizes alone.
+    """
 
     arguments: int
     body: tuple[Token, ...]
+    default: tuple[Token, ...] | None = None
+    starred: bool = False
 
 
+UNKNOWN = Macro(0, ())
+"""A macro whose definition is not understood."""
 Macros = Mapping[str, Macro]
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
@@ -133,8 +141,14 @@ def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Tok
         else:
             if depth >= _MAX_NESTING:
                 raise Unread(f"macros are nested too deeply in \\{printable(token.text)}", token.at)
+            if macro is UNKNOWN:
+                raise Unread(f"the definition of \\{printable(token.text)} is not supported", token.at)
+            i += macro.starred and i < len(rest) and rest[i].text == "*"
             arguments = []
-            for _ in range(macro.arguments):
+            if macro.default is not None:
+                argument, i = _optional(rest, i, macro.default)
+                arguments.append(argument)
+            for _ in range(macro.arguments - len(arguments)):
                 argument, i = _argument(rest, i, token)
                 arguments.append(argument)
             done += expanded(_filled(macro, arguments, token.at), macros, depth + 1)
@@ -162,6 +176,17 @@ def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token]
         return [found[i]], i + 1
     end = group_end(found, i)
     return list(found[i + 1 : end - 1]), end
+
+
+def _optional(found: Sequence[Token], i: int, default: Sequence[Token]) -> tuple[Sequence[Token], int]:
+    """An argument in square brackets at a place, or what stands for it, and the place behind."""
+    depth = 0
+    for k in range(i, len(found)) if i < len(found) and found[i].text == "[" else ():
+        opens, closes = found[k].text == "[", found[k].text == "]"
+        depth += (opens or found[k].kind == "open") - (closes or found[k].kind == "close")
+        if depth == 0:
+            return found[i + 1 : k], k + 1
+    return default, i
 
 
 def _filled(macro: Macro, arguments: Sequence[Sequence[Token]], at: int) -> list[Token]:
