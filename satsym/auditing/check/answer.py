@@ -14,7 +14,8 @@ from satsym.auditing.check.ends import AtOneTime, at_one_time
 from satsym.auditing.check.matrices import matrix_answer
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.check.nearest import likeness
-from satsym.auditing.latex.grammar import CONSTANT, Reading, read
+from satsym.auditing.latex.cursor import CONSTANT, Reading
+from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.letters import Letter
 from satsym.auditing.latex.tokens import plain_tokens, tokens
 from satsym.auditing.latex.words import RELATIONS

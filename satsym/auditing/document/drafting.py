@@ -22,8 +22,8 @@ from satsym.auditing.check.derived import Derived, vanishes
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.document import displays
 from satsym.auditing.document.displays import Display, Source
-from satsym.auditing.latex.cursor import Reading
-from satsym.auditing.latex.grammar import CONSTANT, read
+from satsym.auditing.latex.cursor import CONSTANT, Reading
+from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.letters import Letter, of_word
 from satsym.auditing.latex.tokens import Token, Unread, tokens
 from satsym.formula import reading as safe

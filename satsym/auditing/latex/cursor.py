@@ -13,6 +13,9 @@ from satsym.auditing.latex.words import ACCENTS, MARKS, REFUSED, RELATIONS, STYL
 from satsym.formula.tree import Equality, Node
 from satsym.wording import printable
 
+CONSTANT = "constant"
+"""What is equated with this does not change in time."""
+
 
 @dataclass
 class Reading:
@@ -83,6 +86,10 @@ class Cursor(ABC):
         """Read values with their conditions."""
 
     @abstractmethod
+    def _taken(self, base: Node, script: list[Token], at: int) -> Node:
+        """Read what stands below a bar: where something is taken."""
+
+    @abstractmethod
     def _begins_factor(self, token: Token) -> bool:
         """Tell whether a factor begins with a token."""
 
@@ -132,6 +139,10 @@ class Cursor(ABC):
         if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
             return [token, *self._group(True), *self._group(True)]
         return [token]
+
+    def _script_end(self) -> int:
+        """The place behind the script whose sign is next."""
+        return group_end(self._found, self._i + 1) if self._is("{", 1, "open") else self._i + 2
 
     def _group(self, braces: bool = False) -> list[Token]:
         """The argument of a macro: a group, or a single token."""

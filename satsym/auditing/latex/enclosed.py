@@ -8,12 +8,13 @@ from dataclasses import replace
 from itertools import pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.letters import cleaned
+from satsym.auditing.latex.cursor import CONSTANT
+from satsym.auditing.latex.letters import GREEK, cleaned
 from satsym.auditing.latex.refusals import RefusalCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import FUNCTIONS
-from satsym.formula.tree import Add, Call, Grid, Node, Sym, Text, constant, symbols
+from satsym.auditing.latex.words import ACCENTS, FUNCTIONS
+from satsym.formula.tree import Add, Call, Grid, Node, Pow, Sym, Text, constant, symbols
 
 
 class EnclosedCursor(RefusalCursor):
@@ -29,6 +30,35 @@ class EnclosedCursor(RefusalCursor):
                 raise Unread("this point of evaluation is not supported", at)
             places.append(sides[0] if line.bare else Call("equal", tuple(sides)))
         return Call("value", (base, *places))
+
+    def _is_transform(self, base: Node) -> bool:
+        r"""Whether braces, or square ones, follow a letter that is set as one of an operator, ``\mathcal{L}^{-1}``."""
+        stem = base.base if isinstance(base, Pow) else base
+        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        operator = letter is not None and letter.style == "cal" and letter.base in words.TRANSFORMS
+        token = self._peek()
+        return (
+            operator
+            and token is not None
+            and (token.text == "[" or (token.kind == "macro" and token.text in "{lbrace"))
+        )
+
+    def _transform(self, base: Node) -> Node:
+        """What a transform, or a mean, is of."""
+        opening = self._take()
+        begin = self._i
+        if opening.text == "[":
+            self._i -= 1
+            return Call("transform", (base, self._inner(self._found[begin : self._bracket_end()], opening.at)))
+        return Call("transform", (base, self._inner(self._braced(), opening.at)))
+
+    def _braced(self) -> Sequence[Token]:
+        """What stands in printed braces, or angular brackets, the first of which was taken."""
+        begin, depth = self._i, 1
+        while depth:
+            inside = self._take()
+            depth += inside.kind == "macro" and (inside.text in words.OPENING) - (inside.text in words.CLOSING)
+        return self._found[begin : self._i - 1]
 
     def _in_a_frame(self) -> Node:
         """A letter in front of which its frame is printed, ``{}^A r``: components in that frame."""
@@ -60,6 +90,39 @@ class EnclosedCursor(RefusalCursor):
             self._i += 1
         return Call(word, tuple(arguments))
 
+    def _upright(self, token: Token) -> Node | None:
+        """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
+        group = self._peek_group()
+        word = "".join(t.text for t in group)
+        behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
+        following = self._found[behind] if behind < len(self._found) else None
+        worn = following is not None and following.text in (*GREEK, *ACCENTS, *words.STYLES)
+        if word == "d" and following is not None and (worn or following.kind in ("letter", "open")):
+            self._i = behind
+            return self._differential(token.at)
+        if (found := self._named(token.text, word, len(group))) is not None:
+            return found
+        if word != "constantvector":
+            self._refuse_word(token.text, word.strip(), token.at)
+        if word in words.OPTIMA and following is not None and following.text == "_":
+            self._i = behind
+            return self._optimum(replace(token, text=word))
+        if word in FUNCTIONS and len(word) > 1 and word != "diff":
+            self._i = behind
+            return self._function(FUNCTIONS[word], token)
+        if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
+            self._i = behind + (behind < len(self._found) and self._found[behind].text == ".")
+            self._reading.constants = True
+            return Sym(CONSTANT)
+        return None
+
+    def _called(self, name: str) -> Node | None:
+        """A function that is only known by name, with its brackets or the letter behind it."""
+        if self._is("("):
+            return Call(name, tuple(self._arguments()))
+        letter = self._letter()
+        return Call(name, (self._symbol(letter, self._found[self._i - 1].at),)) if letter else None
+
     def _unit(self, last: Node) -> Node | None:
         """The unit behind a number, which is set upright; ``None``, with nothing taken, where none is next."""
         begin, said = self._i, ""
@@ -83,11 +146,7 @@ class EnclosedCursor(RefusalCursor):
 
     def _braces(self, token: Token) -> Node:
         """What stands in printed braces, or in angular brackets: a mean, or an inner product."""
-        begin, depth = self._i, 1
-        while depth:
-            inside = self._take()
-            depth += inside.kind == "macro" and (inside.text in words.OPENING) - (inside.text in words.CLOSING)
-        parts = split(self._found[begin : self._i - 1], lambda t: t.kind == "sign" and t.text in ",;")
+        parts = split(self._braced(), lambda t: t.kind == "sign" and t.text in ",;")
         if token.text == "langle":
             return Call("angled", tuple(self._inner(part, token.at) for part in parts))
         if len(parts) > 1:

@@ -7,18 +7,17 @@ letter may be a function of time (``x(t)``); derivatives are printed as dots, qu
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import factorial
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import Reading
+from satsym.auditing.latex.cursor import CONSTANT, Reading
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
-from satsym.auditing.latex.quotients import has_differentials, is_differential_of
+from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.sums import SumCursor
@@ -27,9 +26,6 @@ from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, 
 from satsym.formula.reading import MAX_DEPTH
 from satsym.formula.tree import Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, children, constant
 from satsym.wording import printable
-
-CONSTANT = "constant"
-"""What is equated with this does not change in time."""
 
 
 def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[str] = ()) -> Reading:
@@ -68,7 +64,7 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         if reading.differential >= 0 and line.bare:
             raise Unread("a differential is not supported", reading.differential)
         reading.statements += sides if line.bare else []
-        for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True):
+        for sign, side, (one, other) in zip(line.signs, line.sides[1:], pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
                 raise Unread(
                     "a bracket with a comma is not supported here, as it could be a commutator", line.sides[0][0].at
@@ -80,11 +76,13 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
                 )
             if Sym("nabla") in (one, other):
                 raise Unread("a nabla on its own is not a quantity", line.sides[0][0].at)
-            if reading.differential >= 0 and not (sign == "=" and is_differential_of(one) and has_differentials(other)):
+            if reading.differential >= 0 and not (sign == "=" and are_differentials(one, other)):
                 raise Unread("a differential is not supported", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
             if sign == "=" and taken and _stands_in(one, other):
                 raise Unread("this letter occurs both with and without an argument", line.sides[0][0].at)
+            if sign == "element" and isinstance(other, Grid) and side[0].text == "(" and len(other.entries) == 2:
+                other = Call("open_interval", other.entries)
             reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
     return reading
 
@@ -108,8 +106,6 @@ class Parser(SumCursor):
 
     def whole(self) -> Node:
         """The whole side."""
-        if not self._found:
-            raise Unread("one side of the equation is empty", self._start)
         tree = self._sum()
         if self._i < len(self._found):
             self._refuse()
@@ -139,9 +135,14 @@ class Parser(SumCursor):
             elif self._begins_factor(token):
                 self._refuse_behind(chain[-1], token)
                 last = self._found[self._i - 1]
-                if token.kind == "number" and last.kind == "letter" and token.at == last.at + 1:
+                group = self._found[self._i + 1 : self._i + 3] if token.kind == "open" else [token]
+                worn = last.kind == "letter" or last.text in GREEK
+                beside = token.at <= last.at + len(last.text) + (last.kind == "macro")
+                numeral = [t.kind for t in group] in (["number"], ["number", "close"])
+                if numeral and worn and beside and (token.kind == "open" or last.kind == "letter"):
                     raise Unread("a number after a letter could be an index or a power", token.at)
-                if text in words.ELLIPSES or chain[-1] == Sym("ellipsis"):
+                between = last.text == ")" and self._is("(", 1)
+                if (text in words.ELLIPSES and not between) or (chain[-1] == Sym("ellipsis") and text != "("):
                     raise Unread("an ellipsis between factors is not supported", token.at)
                 chain.append(self._factor())
             else:
@@ -154,17 +155,17 @@ class Parser(SumCursor):
         before, product = chain[-1], words.OF_VECTORS.get(sign.text)
         if product and self._is_vector(before):
             field = isinstance(before, Call) and before.function in ("curl", "divergence")
-            if (crossed and "cross" in (product, crossed)) or field:
+            if (crossed in ("cross", "dot") and "cross" in (product, crossed)) or field:
                 raise Unread("several products of vectors in a row need brackets", sign.at)
             chain[-1] = self._of_vectors(product, before, sign)
             return product
         chain.append(self._signed_factor())
-        scalar = any(constant(side) is not None for side in (before, chain[-1]))
+        scalar = crossed == "number" or any(constant(side) is not None for side in (before, chain[-1]))
         if sign.text == "times" and not scalar and not isinstance(before, Grid):
             raise Unread(
                 "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot", sign.at
             )
-        return crossed
+        return "number" if sign.text == "times" and scalar else crossed
 
     def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
         """A product divided by the factor behind a slash."""
@@ -229,7 +230,9 @@ class Parser(SumCursor):
 
     def _powers(self, base: Node) -> Node:
         while True:
-            if self._is("^"):
+            if self._is_transform(base):
+                base = self._transform(base)
+            elif self._is("^"):
                 self._part_transposition(base == Sym("e"))
                 at = self._take().at
                 known = isinstance(base, Sym) and base.name in self._reading.letters
@@ -239,21 +242,30 @@ class Parser(SumCursor):
             elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
                 self._i += 2
                 base = self._taken(base, self._script(), bar.at)
+                if self._is("^"):
+                    raise Unread("this point of evaluation is not supported", bar.at)
             elif self._is("_") and not isinstance(base, Num):
                 at = self._take().at
-                index = self._inner(self._script(), at)
-                if isinstance(index, Mul):
-                    raise Unread("this index is not supported", at)
-                base = Call("indexed", (base, index))
+                base = Call("indexed", (base, self._indices_of(self._script(), at)))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime has no meaning here", self._take().at)
             elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
                 self._i += 1
                 base = Num(Fraction(factorial(int(base.value))))
             elif self._is("!"):
-                raise Unread("a factorial is not supported here", self._take().at)
+                self._i += 1
+                base = Call("factorial", (base,))
             else:
                 return base
+
+    def _indices_of(self, script: Sequence[Token], at: int) -> Node:
+        """The index of something in brackets: one expression, or several, such as those of an entry of a matrix."""
+        letters = all(t.kind == "letter" for t in script)
+        parts = [[t] for t in script] if letters else split(script, lambda t: t.kind == "sign" and t.text == ",")
+        indices = [self._inner(part, at) for part in parts]
+        if any(isinstance(index, Mul) for index in indices):
+            raise Unread("this index is not supported", at)
+        return indices[0] if len(indices) == 1 else Call("list", tuple(indices))
 
     def _inner(self, part: Sequence[Token], at: int) -> Node:
         if not part:
@@ -322,7 +334,14 @@ class Parser(SumCursor):
         if name in ("frac", "tfrac", "dfrac", "cfrac"):
             above, below = self._group(), self._group()
             self._refuse_derivative(above, below, token.at)
+            self._refuse_units(above, below)
             return Div(self._inner(above, token.at), self._inner(below, token.at))
+        if name in words.OPERATOR_NAMES and (called := self._called(name)) is not None:
+            return called
+        if name in ("d", "dd", "diff") and not self._is("("):
+            return self._differential(token.at)
+        if name == "binom":
+            return Call("binomial", (self._inner(self._group(), token.at), self._inner(self._group(), token.at)))
         if name in KEPT_GROUPS:
             inner = self._inner(self._group(), token.at)
             if self._is("_") or self._is("^"):  # what is written beside the brace
@@ -345,7 +364,11 @@ class Parser(SumCursor):
         letter = self._letter()
         if letter is None and (name in MARKS or name in ACCENTS):
             self._i += 1
-            inner = self._inner(self._group(), token.at)
+            group = self._group()
+            if len(group) > 1 and all(t.kind == "letter" and t.text.isupper() for t in group):
+                name = "".join(t.text for t in group)
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", group[0].at)
+            inner = self._inner(group, token.at)
             return Call("over", (inner, Sym(MARKS[name]))) if name in MARKS else self._dotted(inner, ACCENTS[name])
         if letter is None:
             self._refuse()
@@ -362,27 +385,6 @@ class Parser(SumCursor):
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
             raise Unread(f"the function {printable(letter.base)} is not known", token.at)
         return self._symbol(letter, token.at)
-
-    def _upright(self, token: Token) -> Node | None:
-        """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
-        group = self._peek_group()
-        word = "".join(t.text for t in group)
-        if (found := self._named(token.text, word, len(group))) is not None:
-            return found
-        if word != "constantvector":
-            self._refuse_word(token.text, word.strip(), token.at)
-        behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
-        if word in words.OPTIMA and behind < len(self._found) and self._found[behind].text == "_":
-            self._i = behind
-            return self._optimum(replace(token, text=word))
-        if word in FUNCTIONS and len(word) > 1 and word != "diff":
-            self._i = behind
-            return self._function(FUNCTIONS[word], token)
-        if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
-            self._i = behind + (behind < len(self._found) and self._found[behind].text == ".")
-            self._reading.constants = True
-            return Sym(CONSTANT)
-        return None
 
 
 _READERS: Mapping[str, Callable[[Parser, Token], Node]] = {

@@ -62,7 +62,9 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
         for first, last in _runs(part):
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
-            if name in SAID and len(name) == len(part):
+            ends = part[first - 1].at + len(part[first - 1].text) if first else 0
+            apart = first == 0 or part[first].at > ends, not behind or behind[0].at > part[last - 1].at + 1
+            if name in SAID and (len(name) == len(part) or all(apart)):
                 raise Unread("words inside a formula are not supported", part[first].at)
             if (
                 len(name) >= _LONG_WORD
@@ -73,10 +75,12 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
                 raise Unread("words inside a formula are not supported", part[first].at)
             called = len(name) > 2 and name[0].isupper() and name[-2:].islower() and bool(set("aeiou") & set(name))
             called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
-            if called and behind and behind[0].text == "(":
+            if called and behind and behind[0].text in ("(", "_"):
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
             free = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])} <= {"(", ")", ","}
-            if (name in _GROUPS and free) or (len(name) > 2 and name.isupper() and len(name) == len(part)):
+            if (name in _GROUPS and free) or (
+                name.isupper() and len(name) == len(part) and (len(name) > 2 or len(line) > 2)
+            ):
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
             numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
             beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.quotients import QuotientCursor, is_differential
+from satsym.auditing.latex.letters import GREEK, Letter
+from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
-from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, walk
+from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
 from satsym.wording import printable
 
 
@@ -37,13 +36,12 @@ class OperatorCursor(QuotientCursor):
 
     def _gradient(self, token: Token) -> Node:
         """A gradient: what it is of, and by which letter, where that is printed."""
-        by: list[Node] = []
-        if self._is("_"):
-            self._i += 1
-            by = [self._inner(self._script(), token.at)]
-        if self._is("^") and self._is("2", 1, "number"):
-            self._i += 2
-            return Call("laplacian", (self._factor(), *by))
+        scripts = self._limits()
+        by = [self._inner(scripts["_"], token.at)] if "_" in scripts else []
+        if "^" in scripts:
+            if [t.text for t in scripts["^"]] != ["2"]:
+                raise Unread("a derivative of this order is not supported", token.at)
+            return Call("hessian" if by else "laplacian", (self._factor(), *by))
         for sign, name in (("cdot", "divergence"), ("times", "curl")):
             if self._is(sign, kind="macro"):
                 self._i += 1
@@ -76,24 +74,6 @@ class OperatorCursor(QuotientCursor):
             ]
         return Call(OPTIMA[token.text], (self._sum(), *over))
 
-    def _sum_over(self, token: Token) -> Node:
-        """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
-        limits = self._limits()
-        parts: list[Node] = [self._product()]
-        if below := limits.get("_"):
-            line = relation_in(below)
-            if line.signs not in ([], ["="]):
-                sides = [self._inner(side, token.at) for side in line.sides]
-                parts += [Call(sign, pair) for sign, pair in zip(line.signs, pairwise(sides), strict=True)]
-            else:
-                indices = split(line.sides[0], lambda t: t.text == ",")
-                if all(t.kind == "letter" for t in line.sides[0]):  # set side by side
-                    indices = [[letter] for letter in line.sides[0]]
-                parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
-        if "^" in limits:
-            parts.append(self._limit(limits["^"], token.at))
-        return Call("sum" if token.text == "sum" else "product", tuple(parts))
-
     def _limits(self) -> dict[str, list[Token]]:
         limits: dict[str, list[Token]] = {}
         while self._is("_") or self._is("^"):
@@ -106,32 +86,6 @@ class OperatorCursor(QuotientCursor):
         part = line.sides[-1] if line.signs == ["="] else part
         endless = len(part) == 1 and part[0].text == "infty"
         return Sym("infinity") if endless else self._inner(part, at)
-
-    def _integral(self, token: Token) -> Node:
-        """An integral: what stands up to the differential, its letter, and from where to where, as far as printed."""
-        limits = self._limits()
-        begin, depth = self._i, 0
-        while (now := self._peek()) is not None:
-            depth += (now.kind in ("open", "begin") or now.text in "([") - (
-                now.kind in ("close", "end") or now.text in ")]"
-            )
-            if depth < 0:
-                break
-            here = self._i
-            if depth == 0 and here > begin and is_differential(now):
-                letters = list(self._variables())
-                behind = self._peek()
-                ends = behind is None or behind.text in ("+", "-", ")", "]")
-                if ends and all(letters) and len(letters) in (1, words.INTEGRALS[token.text]):
-                    along = self._found[here - 1].text == "cdot"
-                    tree = self._inner(self._found[begin : here - along], token.at)
-                    over = [self._symbol(letter, now.at) for letter in letters if letter]
-                    parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
-                    parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
-                    name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
-                    return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
-            self._i = here + 1
-        raise Unread("an integral without a differential at its end is not supported", token.at)
 
     def _root(self) -> Node:
         degree: Node | None = None
@@ -226,6 +180,8 @@ class OperatorCursor(QuotientCursor):
             before = self._found[begin - 1]
             if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
                 raise Unread("arguments in brackets after this expression are not supported", at)
+        if len(arguments) == 1 and square and self._is("(") and self._is_place_next():
+            raise Unread("arguments in brackets after this expression are not supported", at)
         if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
             return Call("value", (listed, *self._arguments()))
@@ -300,15 +256,34 @@ class OperatorCursor(QuotientCursor):
         words_inside = "".join(t.text for t in inside)
         if words_inside in words.TIMES_OF_ANGLES:
             return base
+        if isinstance(base, Pow) and words_inside in words.AT_A_TIME and (letter := self._squared(base)):
+            self._i = begin
+            taken = self._taken_at(letter)
+            return Pow(Call("value", (base.base, *taken)), base.exponent) if taken else base
+        turned = isinstance(base, Call) and base.function == "transpose" and base.arguments[0]
+        if isinstance(turned, Sym):  # R^T(x) is R(x)^T
+            self._i = begin
+            taken = self._taken_at(self._reading.letters[turned.name])
+            return Call("transpose", (Call("value", (turned, *taken)),)) if taken else base
         places = split(inside, lambda token: token.text == ",")
-        if isinstance(base, Call) and base.function == "raised" and all(map(self._place, places)):
+        timed = words_inside in words.AT_A_TIME
+        inverse = isinstance(base, Pow) and constant(base.exponent) == -1 and not symbols(base.base) & words.FIELDS
+        raised = isinstance(base, Call) and base.function == "raised"
+        if (raised and timed) or ((raised or inverse) and all(map(self._place, places))):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
-        if words_inside in words.AT_A_TIME or self._place(inside) is not None or self._is_taken(inside):
+        if timed or self._place(inside) is not None or self._is_taken(inside):
             raise Unread(
                 "a power between a function and its argument, as in x^2(t), is not supported", self._found[begin].at
             )
         self._i = begin
         return base
+
+    def _squared(self, power: Pow) -> Letter | None:
+        """The letter of a power, unless its powers may be something else: functions that are iterated, deltas."""
+        letter = self._reading.letters.get(power.base.name) if isinstance(power.base, Sym) else None
+        exponent = constant(power.exponent)
+        unclear = letter is None or letter.base in words.FIELDS or letter.base in ("delta", "T", *words.ARGUED)
+        return None if unclear or exponent is None or exponent < 2 else letter
 
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
         if not script:
@@ -359,7 +334,7 @@ class OperatorCursor(QuotientCursor):
 
     def _is_vector(self, node: Node) -> bool:
         """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
-        if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised"):
+        if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised", "differential"):
             return self._is_vector(node.arguments[0])
         if isinstance(node, Call):
             return node.function in ("cross", "transpose", "gradient", "curl")

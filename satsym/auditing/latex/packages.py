@@ -2,11 +2,13 @@ r"""Macros of packages that many documents load: ``\dv{x}{t}``, ``\norm{x}``, ``
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
+from satsym.auditing.latex.words import STYLES, UNITS
 
 _OTHER_NAMES = {
     "cross": "times",
@@ -45,14 +47,22 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         token = found[i]
         i += 1
         name = token.text if token.kind == "macro" else ""
-        if token.kind == "open" and i < len(found) and found[i].kind == "macro" and found[i].text in ("rm", "it", "sf"):
+        after = [t.text for t in found[i : i + 3]]
+        if name in STYLES and (after[:1] == ["nabla"] or after == ["{", "nabla", "}"]):
+            done.append(Token("macro", "nabla", token.at))
+            i += 1 if after[0] == "nabla" else 3
+        elif name == "qty" and after[:1] and after[0] in "([":
+            continue
+        elif (
+            token.kind == "open" and i < len(found) and found[i].kind == "macro" and found[i].text in ("rm", "it", "sf")
+        ):
             done += [replace(found[i], text="mathrm"), token]
             i += 1
         elif name in ("boldsymbol", "bm", "mathbf") and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             done += _bold(token, found[i + 1 : end - 1])
             i = end
-        elif name in ("SI", "si", "num", "unit") and i < len(found) and found[i].text in ("{", "["):
+        elif name in ("SI", "si", "num", "unit", "qty") and i < len(found) and found[i].text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside
         elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
@@ -60,7 +70,8 @@ def put_in(found: Sequence[Token]) -> list[Token]:
             i += 1
         elif name in _OTHER_NAMES:
             done.append(Token("macro", _OTHER_NAMES[name], token.at))
-        elif name in _BARS and i < len(found) and found[i].kind == "open":
+        elif name in _BARS and i < len(found) and found[i].text in "*{":
+            i += found[i].text == "*"
             end = group_end(found, i)
             opening, closing = (Token("macro", bar, token.at) for bar in _BARS[name])
             done += [opening, *put_in(found[i + 1 : end - 1]), closing]
@@ -83,31 +94,30 @@ def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token]
     if found[i].text == "[":
         i = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1) + 1
     groups: list[list[Token]] = []
-    while i < len(found) and found[i].kind == "open" and len(groups) < (2 if macro.text == "SI" else 1):
+    while i < len(found) and found[i].kind == "open" and len(groups) < (2 if macro.text in ("SI", "qty") else 1):
         end = group_end(found, i)
         groups.append(list(found[i + 1 : end - 1]))
         i = end
-    number = groups.pop(0) if groups and macro.text in ("SI", "num") else []
+    number = groups.pop(0) if groups and macro.text in ("SI", "num", "qty") else []
     if not groups:
         return number, i
     said = "".join(_UNITS.get(t.text, t.text) for t in groups[0])
+    if not all(part in UNITS for part in re.findall(r"[A-Za-z]+", said)):
+        return [macro], i
     letters = [Token("letter" if c.isalpha() else "sign", c, macro.at) for c in said.strip()]
     return [*number, Token("macro", "mathrm", macro.at), _brace(True, macro.at), *letters, _brace(False, macro.at)], i
 
 
 def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:
     """What is set bold, letter by letter where it is a formula and not one letter with what it wears."""
-    letters = [k for k, t in enumerate(inside) if t.kind == "letter" and (not k or inside[k - 1].text not in "^_{")]
-    greek = [k for k, t in enumerate(inside) if t.kind == "macro" and t.text in GREEK]
-    signs = any(t.kind == "sign" and t.text in "=+-()^" for t in inside)
-    if len(letters) + len(greek) < 2 and not signs:
+    alone = [k for k, t in enumerate(inside) if t.kind == "letter" or (t.kind == "macro" and t.text in GREEK)]
+    alone = [k for k in alone if not (k and inside[k - 1].text in "^_") and not _within_script(inside, k)]
+    if len(alone) < 2 and not any(t.kind == "sign" and t.text in "=+-()^" for t in inside):
         return [macro, _brace(True, macro.at), *inside, _brace(False, macro.at)]
     done: list[Token] = []
     for k, token in enumerate(inside):
-        alone = token.kind == "letter" or (token.kind == "macro" and token.text in GREEK)
-        script = k > 0 and (inside[k - 1].text in "^_" or _within_script(inside, k))
         at = token.at
-        done += [replace(macro, at=at), _brace(True, at), token, _brace(False, at)] if alone and not script else [token]
+        done += [replace(macro, at=at), _brace(True, at), token, _brace(False, at)] if k in alone else [token]
     return done
 
 

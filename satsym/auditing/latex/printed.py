@@ -8,13 +8,15 @@ from dataclasses import replace
 from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
 from satsym.auditing.latex.rows import split
-from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.tokens import Token, Unread, group_end, has_bold, in_tex
 from satsym.auditing.latex.words import (
     ACCENTS,
+    ARGUED,
     AT_A_TIME,
     COUNTERS,
     DOUBLE_SIGNS,
     INDICES,
+    LAPSED,
     MARKS,
     SHIFTED,
     STARS,
@@ -78,7 +80,7 @@ class LetterCursor(Cursor):
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"
-        return token.kind == "macro" and (token.text in GREEK or token.text in ACCENTS or token.text in STYLES)
+        return token.kind == "macro" and any(token.text in names for names in (GREEK, ACCENTS, MARKS, STYLES))
 
     def _letter_in(self, part: Sequence[Token]) -> Letter | None:
         """The letter that a group is, if it is nothing else."""
@@ -107,7 +109,7 @@ class LetterCursor(Cursor):
                 index = cleaned(self._said(script))
                 if not index:
                     raise Unread("this index is not supported", at)
-                foot = ",".join(filter(None, [letter.foot, _in_tex(script)]))
+                foot = ",".join(filter(None, [letter.foot, in_tex(script)]))
                 letter = replace(letter, index="_".join(filter(None, [letter.index, index])), foot=foot)
             elif self._is("'"):
                 self._i += 1
@@ -186,7 +188,8 @@ class LetterCursor(Cursor):
             return "_".join(["prime"] * len(word.replace("prime", "'")))
         if len(script) == 1 and script[0].kind == "sign" and script[0].text in "+-":
             return "plus" if script[0].text == "+" else "minus"
-        spelled = len(script) > 2 and word.isalpha() and all(t.kind == "letter" for t in script)
+        spelled = len(script) > 2 or (len(script) == 2 and word.isupper() and word[-1] != "T")
+        spelled &= word.isalpha() and all(t.kind == "letter" for t in script)
         if (
             word in ("max", "min")
             or (spelled and self._may_have_index)
@@ -222,6 +225,10 @@ class LetterCursor(Cursor):
                 said.append(f" {token.text} ")
             elif token.kind in ("letter", "number"):
                 said.append(token.text)
+            elif token.text in ("frac", "tfrac", "dfrac") and i < len(script) and script[i].kind == "open":
+                end = group_end(script, i)
+                said.append(f"{self._said(script[i:end])} over ")
+                i = end
             elif token.text in ("times", ","):
                 said.append(" by " if token.text == "times" else " ")
             elif token.kind == "sign" and token.text == "/" and script[i - 2].kind == "number":
@@ -282,19 +289,27 @@ class LetterCursor(Cursor):
             self._i = begin
             return ()
         known = self._reading.known.get(letter.name, set())
-        sure = len(places) > 1 or bare or fixed or number or known or self._is_taken(inside)
+        lapse = letter.base in LAPSED and _is_lapse(inside)
+        argued = letter in map(Letter, ARGUED) and self._is_product(inside)
+        sure = len(places) > 1 or bare or fixed or number or known or lapse or argued or self._is_taken(inside)
         if not sure and not self._is_shift(letter, inside):
             barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
             angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
             turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
             turned |= letter.base == "R" and angles and inside[0].text in GREEK
             taken = self._is_product(inside) and not self._is_factor(letter, inside)
+            taken |= inside[-1].text != "T" and self._is_power(inside) and len(letter.base) + len(letter.marks) > 1
+            transformed = letter.base.isupper() and {"s"} in self._reading.known.values()
+            taken |= transformed and "s" in {t.text for t in inside} and "+" in {t.text for t in inside}
             order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
-            divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not _has_bold(inside)
+            divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
+            divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
             varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
             shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
             step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
+            step &= not any(t.text == "(" for t in inside)
+            step |= letter.base in "ghG" and _is_lapse(inside)
             next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
             a_place = barred or turned or taken or order or transposed or next_state or shifted or step or divided
             if a_place or letter.style == "cal":
@@ -361,26 +376,24 @@ class LetterCursor(Cursor):
         ]
         return crossed or (letter.bold and letter.base.isupper() and bool(bold) and not plain)
 
+    def _is_power(self, part: Sequence[Token]) -> bool:
+        """Whether a letter stands in brackets with its power alone."""
+        inner = self._of(part)
+        return inner._letter() is not None and inner._is("^") and inner._script_end() == len(part)
+
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""
         if len(part) < 2 or any((t.text in "+-*/" and t.kind == "sign") or t.text in DOUBLE_SIGNS for t in part):
             return False
         inner = self._of(part)
         first = inner._letter()
+        while first is not None and inner._is("^"):
+            inner._i = inner._script_end()
         behind = part[inner._i] if inner._i < len(part) else None
         return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
 
 
-def _has_bold(part: Sequence[Token]) -> bool:
-    """Whether a letter that is set as a vector is among tokens."""
-    return any(token.kind == "macro" and STYLES.get(token.text) == "vector" for token in part)
-
-
-def _in_tex(part: Sequence[Token]) -> str:
-    """Tokens as LaTeX again."""
-    said, after_macro = "", False
-    for token in part:
-        text = f"\\{token.text}" if token.kind == "macro" else token.text
-        said += f" {text}" if after_macro and text[:1].isalpha() else text
-        after_macro = token.kind == "macro" and token.text[-1:].isalpha()
-    return said
+def _is_lapse(part: Sequence[Token]) -> bool:
+    """Whether a difference of two times stands in brackets."""
+    named = [t.text for k, t in enumerate(part) if t.kind in ("letter", "macro") and part[k - 1].text not in "_{"]
+    return len(named) == 2 and set(named) <= {"t", "tau", "s", "T"} and "-" in {t.text for t in part}

@@ -8,7 +8,7 @@ from dataclasses import replace
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.formula.tree import Add, Call, Mul, Node, Sym, constant, walk
+from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 
 
 class QuotientCursor(LetterCursor):
@@ -100,8 +100,16 @@ class QuotientCursor(LetterCursor):
         head = self._order(above)
         if by is None or head is None or head[0] != len(by):
             return None
-        order, rest, partial = head
-        what: Node | None
+        _, rest, partial = head
+        if not rest and (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
+            self._i += 2  # where it is taken stands in front of what it is of
+            script = self._script()
+            return self._taken(self._derived(above, rest, partial, by), script, bar.at)
+        return self._derived(above, rest, partial, by)
+
+    def _derived(self, above: Sequence[Token], rest: list[Token], partial: bool, by: Sequence[Letter]) -> Node:
+        """The derivative of what stands behind the sign, or behind the quotient."""
+        what: Node
         if rest:
             letter = self._letter_in(rest)
             what = self._symbol_of(letter, rest) if letter else self._inner(rest, above[0].at)
@@ -113,7 +121,7 @@ class QuotientCursor(LetterCursor):
                 self._reading.letters.setdefault(name, letter)
                 what = Call("diff", (what, Sym(name)))
             return what
-        for _ in range(order):
+        for _ in by:
             what = self._along(what)
         return what
 
@@ -198,12 +206,8 @@ def after_differential(part: list[Token]) -> list[Token]:
     return part[1:]
 
 
-def is_differential_of(tree: Node) -> bool:
-    """Whether a tree is the differential of a letter."""
-    return isinstance(tree, Call) and tree.function == "differential"
-
-
-def has_differentials(tree: Node) -> bool:
-    """Whether each term has a differential among its factors."""
-    terms = tree.terms if isinstance(tree, Add) else (tree,)
-    return all(any(is_differential_of(part) for _, part in walk(term)) for term in terms)
+def are_differentials(*sides: Node) -> bool:
+    """Whether each term of each side has a differential among its factors; a zero may be one of two sides."""
+    terms = [term for side in sides if side != ZERO for term in (side.terms if isinstance(side, Add) else (side,))]
+    found = [[isinstance(part, Call) and part.function == "differential" for _, part in walk(term)] for term in terms]
+    return all(map(any, found))

@@ -49,6 +49,8 @@ class RefusalCursor(OperatorCursor):
     def _refuse_behind(self, last: Node, token: Token) -> None:
         """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
         before, after = self._found[self._i - 1], self._peek(1)
+        if last in (Sym("delta"), Sym("Delta")) and token.text in words.INTEGRALS:
+            raise Unread("this delta could be a difference or a factor in front of an integral", before.at)
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
             if said in words.UNITS and (plain or constant(last) is not None):
@@ -66,14 +68,16 @@ class RefusalCursor(OperatorCursor):
         if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
             raise Unread("this could be a unit or a factor after a power of ten; set units upright", token.at)
         stem = last.base if isinstance(last, Pow) else last
+        stem = last.arguments[0] if isinstance(last, Call) and last.function == "raised" else stem
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
-        if letter is not None and letter.base == "L" and letter.index in FIELDS:
+        if letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in FIELDS:
             raise Unread("a derivative along a vector field is not supported", token.at)
         applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)
         if letter is not None and token.text in ("[", "{", "lbrace") and token.kind in ("sign", "macro"):
             alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
+            alone |= letter.base in (words.TRANSFORMS if token.kind == "macro" else "E")
             if letter.style == "cal" or alone:
                 raise Unread("arguments in brackets of this kind are not supported", token.at)
 
@@ -90,8 +94,13 @@ class RefusalCursor(OperatorCursor):
         """A function whose backslash is lost, in front of a bracket or a Greek letter; elsewhere it is refused."""
         before = self._found[self._i - 2] if self._i > 1 else None
         alone = before is None or before.kind != "letter" or before.at != token.at - 1
-        for word in words.SPELLED:
-            if self._spells(word):
+        for word in (*words.SPELLED, *words.CALLED):
+            begin = self._i
+            if self._spells(word) and word in words.CALLED and not self._is("("):
+                self._i = begin
+            elif self._i > begin and word in words.CALLED:
+                raise Unread(f"{word} could be one name, \\mathrm{{{word}}}, or a product", token.at)
+            elif self._i > begin:
                 after = self._peek()
                 if alone and word in FUNCTIONS and after is not None and (after.text == "(" or after.text in GREEK):
                     return self._function(FUNCTIONS[word], replace(token, kind="macro", text=word))
@@ -100,12 +109,22 @@ class RefusalCursor(OperatorCursor):
 
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
         """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
-        if len(above) < 2 or above[1].text in ("^", "_"):
+        if not above or (len(above) > 1 and above[1].text in ("^", "_")):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
             raise Unread("this kind of derivative is not supported", at)
-        if above[0].text == "d" and (above[1].kind == "letter" or above[1].text in GREEK):
+        if len(above) < 2:
+            return
+        apart = above[1].at > above[0].at + 2
+        if above[0].text == "d" and apart and (above[1].kind == "letter" or above[1].text in GREEK):
             raise Unread("a differential is not supported", above[0].at)
+
+    def _refuse_units(self, above: Sequence[Token], below: Sequence[Token]) -> None:
+        """Refuse a quotient of units."""
+        said = ["".join(t.text for t in part[1:]).strip("{}") for part in (above, below)]
+        set_upright = all(part and part[0].text in words.UPRIGHT for part in (above, below))
+        if set_upright and all(one.partition("}")[0] in words.UNITS for one in said):
+            raise Unread("a unit in a formula is not supported", above[0].at)
 
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
         """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
@@ -116,7 +135,5 @@ class RefusalCursor(OperatorCursor):
         parted = any(b > a + space for a, b in pairwise(places)) and word.isalpha()
         if word.lower() in words.SAID or parted:
             raise Unread("words inside a formula are not supported", at)
-        if word == "d" and taken:
-            raise Unread("a differential is not supported", at)
         if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
             raise Unread(f"the function {printable(word)} is not known", at)

@@ -13,6 +13,7 @@ from satsym.auditing.latex.words import (
     OPTIMA,
     RELATIONS,
     SAID,
+    SHORT_WORDS,
     SIGNS,
     SKIPPED_GROUPS,
     SPACES,
@@ -21,6 +22,10 @@ from satsym.auditing.latex.words import (
 )
 
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
+_LINED = ("boxed", "fbox", "underline", "overline")
+"""What may stand around, below or above a whole relation."""
+_NARROW = (";", ":", ">", "~", "medspace", "thickspace")
+"""Spaces that part nothing by themselves."""
 REMARK = "remark"
 """The macro that stands for words between formulas."""
 _JOINED = {("|", "|"): "|", ("<", "<"): "ll", (">", ">"): "gg", (":", "="): "coloneq", ("=", ":"): "equiv"}
@@ -31,18 +36,33 @@ _JOINED |= {("<", "="): "le", (">", "="): "ge", ("=", ">"): REMARK}
 def without_remarks(found: Sequence[Token]) -> list[Token]:
     """The tokens without spaces, labels and alignment; for words between formulas a sign that parts these."""
     kept: list[Token] = []
-    i = depth = 0
+    i = depth = narrow = 0
     while i < len(found):
         token = found[i]
         i += 1
-        if token.kind == "macro" and token.text == "boxed" and i < len(found) and found[i].kind == "open":
+        narrow = narrow + 1 if token.text in _NARROW or token.text.isspace() else 0
+        if token.kind == "macro" and token.text in _LINED and _is_relation(found, i, token.text == "boxed"):
             end = group_end(found, i)
             found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
             i -= 1
+        elif token.kind == "macro" and token.text in UPRIGHT and _is_punctuation(found, i):
+            kept.append(found[i + 1])
+            i = group_end(found, i)
+        elif (
+            token.kind == "open"
+            and found[i : i + 1]
+            and found[i].kind == "close"
+            and _stands_empty(kept, found[i + 1 :])
+        ):
+            i += 1
         elif token.kind == "macro" and token.text == "textcolor" and i < len(found) and found[i].kind == "open":
             i = group_end(found, i)
         elif token.kind == "macro" and token.text == "underset" and (under := _underset(found, i)):
             found = [*found[: i - 1], *under, *found[group_end(found, group_end(found, i)) :]]
+            i -= 1
+        elif token.kind == "macro" and token.text == "mathop" and [t.text for t in found[i : i + 2]] == ["{", "mathrm"]:
+            end = group_end(found, i)
+            found = [*found[: i - 1], replace(token, text="operatorname"), *found[i + 2 : end - 1], *found[end:]]
             i -= 1
         elif token.kind == "macro" and token.text == "ensuremath":
             continue
@@ -74,6 +94,10 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         ):
             if token.text == " " or token.text.isspace():
                 kept.append(replace(token, text=" "))
+            if narrow == 3:  # together as wide as the spaces that part equations
+                while kept and (kept[-1].kind, kept[-1].text) == ("macro", " "):
+                    kept.pop()
+                kept.append(Token("macro", "quad", token.at))
         elif token.kind == "macro" and token.text in UPRIGHT and _has_formula(found, i, kept):
             found = [*found[: i - 1], *_apart(found, i), *found[group_end(found, i) :]]
             i -= 1
@@ -95,15 +119,33 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
     return kept
 
 
+def _is_relation(found: Sequence[Token], i: int, anything: bool) -> bool:
+    """Whether a group at a place holds a relation, or anything."""
+    inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
+    return (anything and bool(inside)) or any(t.text == "=" or t.text in RELATIONS for t in inside)
+
+
+def _is_punctuation(found: Sequence[Token], i: int) -> bool:
+    """Whether a group at a place holds a comma or a full stop alone."""
+    return [t.kind for t in found[i : i + 3]] == ["open", "sign", "close"] and found[i + 1].text in ",.;"
+
+
+def _stands_empty(kept: Sequence[Token], behind: Sequence[Token]) -> bool:
+    """Whether an empty group only sets the space of the sign behind it."""
+    free = not kept or kept[-1].text in ("&", "\\") or (kept[-1].kind == "sign" and kept[-1].text not in "^_")
+    return free and bool(behind) and behind[0].kind == "sign" and behind[0].text in "+-="
+
+
 def _is_bracket(found: Sequence[Token], i: int) -> bool:
     """Whether a group is a bracket and nothing else."""
     end = group_end(found, i)
     depth = 0
-    for place in range(i + 1, end - 1):
-        depth += (found[place].text == "(") - (found[place].text == ")")
-        if depth <= 0 and place < end - 2:
+    inside = [token for token in found[i + 1 : end - 1] if token.text not in ("left", "right")]
+    for place, token in enumerate(inside):
+        depth += (token.text == "(") - (token.text == ")")
+        if depth <= 0 and place < len(inside) - 1:
             return False
-    return end - i > 3 and depth == 0
+    return len(inside) > 1 and depth == 0
 
 
 def _stands_free(kept: Sequence[Token]) -> bool:
@@ -186,4 +228,5 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     spoken = said.strip(" .,:;()").lower()
     if spoken.startswith("constant") or spoken == "otherwise":
         return False
-    return alone or several or spoken in SAID or said.endswith(":") or (said[0] == "(" and said[-1] == ")")
+    worded = spoken in SAID | SHORT_WORDS
+    return alone or several or worded or said.endswith(":") or (said[0] == "(" and said[-1] == ")")

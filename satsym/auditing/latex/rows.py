@@ -10,6 +10,7 @@ from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import (
     CLOSING,
+    COUNTERS,
     ELLIPSES,
     EQUALS,
     OPENING,
@@ -41,8 +42,6 @@ def lines(found: Sequence[Token]) -> list[Line]:
     for place, row in _rows(found):
         for piece in (piece for part in _equations(row) for piece in _at_commas(_at_colons(part))):
             line = _sides(piece)
-            if not any(line.sides):
-                continue
             if not line.sides[0] and line.signs[0] == "tends":  # an arrow in front says that something follows
                 del line.sides[0], line.signs[0]
             before = begun.get(place) or (begun[max(begun)] if begun else None)
@@ -50,6 +49,8 @@ def lines(found: Sequence[Token]) -> list[Line]:
                 before = done[-1]
             first = line.sides[0][0] if line.sides[0] else None
             signed = first is not None and first.kind == "sign" and first.text in "+-"
+            if before is None and not line.sides[0]:
+                raise Unread("an expression is missing in front of this sign", piece[0].at)
             if before is not None and not line.sides[0]:  # a line that begins with a sign of relation
                 before.sides += line.sides[1:]
                 before.signs += line.signs
@@ -119,6 +120,8 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
             if depth <= 0 and not _goes_on(rows[-1]):  # else a bracket or a sum goes on in the next line
                 line += 1
                 rows.append([])
+            elif depth <= 0:
+                i += _repeats(found, i, rows[-1])
             broken = depth > 0
         elif token.kind == "sign" and token.text == "&" and not inside:
             if not systems:
@@ -149,6 +152,15 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
     for k, gap in gaps:
         _refuse_gap(rows[k], gap)
     return [(place, row) for place, row in zip(places, rows, strict=True) if row]
+
+
+def _repeats(found: Sequence[Token], i: int, row: Sequence[Token]) -> int:
+    """How many tokens at the beginning of a line say again the sign that the line before it ends with."""
+    begin = i
+    while i < len(found) and found[i].text == "&":
+        i += 1
+    again = i < len(found) and (found[i].kind, found[i].text) == (row[-1].kind, row[-1].text)
+    return i + 1 - begin if again and row[-1].kind in ("sign", "macro") else 0
 
 
 def _refuse_gap(row: Sequence[Token], gap: int) -> None:
@@ -236,6 +248,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         for piece in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
     ]
     listed = any(token.text in ELLIPSES for token in found)
+    listed |= any(len(part) == 3 and part[0].text in COUNTERS and part[1].text == "=" for part in parts)
     for before, after in pairwise(part for part in parts if part and not listed):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
@@ -323,18 +336,18 @@ def _sign(token: Token) -> str:
 
 def _sides(found: Sequence[Token]) -> Line:
     """What stands between the signs of relation."""
-    signs: list[str] = []
+    signs: list[Token] = []
 
     def divides(token: Token) -> bool:
-        if sign := _sign(token):
-            signs.append(sign)
-        return bool(sign)
+        if _sign(token):
+            signs.append(token)
+        return bool(_sign(token))
 
     sides = split(found, divides)
-    for k in range(len(signs) - 1, 0, -1):  # a sign at the end of a line that is printed again in the next one
-        if not sides[k] and signs[k] == signs[k - 1]:
-            del sides[k], signs[k]
-    return Line(sides, signs)
+    for sign, side in zip(signs, sides[1:], strict=True):
+        if not side:
+            raise Unread("an expression is missing behind this sign", sign.at)
+    return Line(sides, [_sign(sign) for sign in signs])
 
 
 def relation_in(part: Sequence[Token]) -> Line:

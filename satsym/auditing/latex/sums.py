@@ -1,11 +1,15 @@
-"""Sums: terms with their signs, double ones too, and where a sum over an index among them ends."""
+"""Sums with their signs, double ones too; sums over an index, and where these end; integrals."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from satsym.auditing.latex import words
 from satsym.auditing.latex.enclosed import EnclosedCursor
-from satsym.auditing.latex.tokens import Unread
-from satsym.formula.tree import Add, Call, Neg, Node, children, symbols
+from satsym.auditing.latex.quotients import is_differential
+from satsym.auditing.latex.rows import relation_in, split
+from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.formula.tree import Add, Call, Mul, Neg, Node, children, symbols
 
 
 class SumCursor(EnclosedCursor):
@@ -15,14 +19,17 @@ class SumCursor(EnclosedCursor):
         terms: list[Node] = []
         summed: set[str] = set()
         while True:
-            negative, double = False, ""
+            negative, double, before = False, "", ""
             while (sign := self._additive()) in ("+", "-"):
-                negative ^= self._take().text == "-"
+                at = self._take().at
+                if sign == before:
+                    raise Unread("two signs stand side by side", at)
+                negative, before = negative ^ (sign == "-"), sign
             if sign:
                 double = words.DOUBLE_SIGNS[self._take().text]
             at = self._found[min(self._i, len(self._found) - 1)].at
             term = self._product()
-            if summed & self._indices(term):
+            if summed & self._free(term):
                 raise Unread("without brackets, it is not clear where the sum ends", at)
             summed |= _summed_over(term)
             term = Call(double, (term,)) if double else term
@@ -30,6 +37,89 @@ class SumCursor(EnclosedCursor):
             if not self._additive():
                 break
         return terms[0] if len(terms) == 1 else Add(tuple(terms))
+
+    def _sum_over(self, token: Token) -> Node:
+        """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
+        limits = self._limits()
+        parts: list[Node] = [self._product()]
+        if below := limits.get("_"):
+            line = relation_in(below)
+            if line.signs not in ([], ["="]):
+                sides = [self._inner(side, token.at) for side in line.sides]
+                parts += [Call(sign, pair) for sign, pair in zip(line.signs, pairwise(sides), strict=True)]
+            else:
+                indices = split(line.sides[0], lambda t: t.text == ",")
+                if all(t.kind == "letter" for t in line.sides[0]):  # set side by side
+                    indices = [[letter] for letter in line.sides[0]]
+                parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
+        if "^" in limits:
+            parts.append(self._limit(limits["^"], token.at))
+        return Call("sum" if token.text == "sum" else "product", tuple(parts))
+
+    def _integral(self, token: Token) -> Node:
+        """An integral: what stands up to the differential, its letter, and from where to where, as far as printed."""
+        limits = self._limits()
+        self._put_differential_last()
+        begin, depth = self._i, 0
+        while (now := self._peek()) is not None:
+            depth += (now.kind in ("open", "begin") or now.text in "([") - (
+                now.kind in ("close", "end") or now.text in ")]"
+            )
+            if depth < 0:
+                break
+            here = self._i
+            if depth == 0 and here > begin and is_differential(now):
+                letters = list(self._variables())
+                behind = self._peek()
+                ends = behind is None or behind.text in ("+", "-", ")", "]")
+                if ends and all(letters) and len(letters) in (1, words.INTEGRALS[token.text]):
+                    along = self._found[here - 1].text == "cdot"
+                    tree = self._inner(self._found[begin : here - along], token.at)
+                    over = [self._symbol(letter, now.at) for letter in letters if letter]
+                    parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
+                    parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
+                    name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
+                    return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
+            self._i = here + 1
+        raise Unread("an integral without a differential at its end is not supported", token.at)
+
+    def _put_differential_last(self) -> None:
+        """Put a differential that is printed in a numerator, or in front of all, behind what is integrated."""
+        found, i = list(self._found), self._i
+        end = group_end(found, i) if self._is("{", kind="open") else i
+        whole = end == len(found) or found[end].text in "+-)]" or end == i
+        if end > i and whole and any(t.text in ("d", "mathrm", "dd") for t in found[i:end]):  # braces around it all
+            found = [*found[:i], *found[i + 1 : end - 1], *found[end:]]
+        depth = length = 0
+        for token in found[i:]:
+            depth += (token.kind in ("open", "begin") or token.text in "([") - (
+                token.kind in ("close", "end") or token.text in ")]"
+            )
+            if depth < 0 or (depth == 0 and token.kind == "sign" and token.text in "+-"):
+                break
+            length += 1
+        alone = i + length == len(found) or found[i + length].text in ")]"
+        first = self._of(found[i:])
+        if is_differential(found[i] if i < len(found) else None) and alone and all(list(first._variables())):
+            found = [*found[:i], *found[i + first._i : i + length], *found[i : i + first._i], *found[i + length :]]
+        depth = 0
+        for k in range(i, i + length):
+            depth += (found[k].kind in ("open", "begin")) - (found[k].kind in ("close", "end"))
+            if depth or found[k].text not in ("frac", "dfrac", "tfrac") or found[k + 1].kind != "open":
+                continue
+            behind = group_end(found, k + 1)
+            above = found[k + 2 : behind - 1]
+            below = found[behind + 1] if behind + 1 < len(found) else None
+            for j in [j for j, token in enumerate(above) if is_differential(token) and not is_differential(below)][:1]:
+                inner = self._of(above)
+                inner._i = j
+                if all(list(inner._variables())) and inner._i == len(above):
+                    rest = above[:j] or [Token("number", "1", above[j].at)]
+                    last = group_end(found, behind) if found[behind].kind == "open" else behind + 1
+                    quotient = [*found[: k + 2], *rest, *found[behind - 1 : last]]
+                    self._found = [*quotient, *above[j:], *found[last:]]
+                    return
+        self._found = found
 
     def _additive(self) -> str:
         """The sign of a sum that is next; empty where none is."""
@@ -39,6 +129,11 @@ class SumCursor(EnclosedCursor):
             or (token.kind == "macro" and token.text in words.DOUBLE_SIGNS)
         )
         return token.text if token is not None and signed else ""
+
+    def _free(self, term: Node) -> set[str]:
+        """The letters of a term, and those of their indices, that are none over which the term is a sum itself."""
+        factors = term.factors if isinstance(term, Mul) else (term,)
+        return set[str]().union(*(self._indices(factor) - _summed_over(factor) for factor in factors))
 
     def _indices(self, term: Node) -> set[str]:
         """The letters of a term, and those of their indices."""

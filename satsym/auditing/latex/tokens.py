@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from satsym.auditing.latex.letters import Letter, of_word
-from satsym.auditing.latex.words import FUNCTIONS, NUMBERED_FUNCTIONS
+from satsym.auditing.latex.words import FUNCTIONS, NUMBERED_FUNCTIONS, STYLES
 from satsym.formula.reading import MAX_DEPTH, MAX_DIGITS
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -72,6 +72,9 @@ _SUBSTITUTES = {
     "\u00b3": "^3",
     "\u00bd": "(1/2)",
     "\u2202": r"\partial ",
+    "\u2260": r"\ne ",
+    "\u2264": r"\le ",
+    "\u2265": r"\ge ",
 }
 _GREEK = dict(
     zip(
@@ -167,6 +170,21 @@ def group_end(found: Sequence[Token], i: int) -> int:
         if depth == 0:
             return k + 1
     return len(found)
+
+
+def in_tex(part: Sequence[Token]) -> str:
+    """Tokens as LaTeX again."""
+    said, after_macro = "", False
+    for token in part:
+        text = f"\\{token.text}" if token.kind == "macro" else token.text
+        said += f" {text}" if after_macro and text[:1].isalpha() else text
+        after_macro = token.kind == "macro" and token.text[-1:].isalpha()
+    return said
+
+
+def has_bold(part: Sequence[Token]) -> bool:
+    """Whether a letter that is set as a vector is among tokens."""
+    return any(token.kind == "macro" and STYLES.get(token.text) == "vector" for token in part)
 
 
 def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token], int]:
@@ -296,6 +314,7 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
     if broken := _BROKEN.search(text):
         raise Unread("a character is invalid; save the text as UTF-8", broken.start())
     found: list[Token] = []
+    text = text.replace("!=", "\u2260 ")
     for match in _PLAIN.finditer(text.rstrip()):
         kind = next(name for name in ("number", "above", "word", "power", "sign") if match[name] is not None)
         value, at = match[kind], match.start(kind)

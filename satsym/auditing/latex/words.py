@@ -34,7 +34,7 @@ SPACES = frozenset(
     ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
     "allowbreak nobreak negthinspace > space hline vphantom boldmath unboldmath noindent medspace thickspace "
-    "tiny scriptsize footnotesize small normalsize large Large displaylimits "
+    "mathnormal xspace tiny scriptsize footnotesize small normalsize large Large displaylimits "
     "vcentcolon IEEEyessubnumber IEEEyesnumber IEEEnonumber IEEEeqnarraynumspace".split()
 ) | {" "}
 SKIPPED_GROUPS = frozenset("label tag vspace hspace phantom vphantom hphantom color eqno cite".split())
@@ -93,6 +93,7 @@ NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
     "skew".split()
 )
+NOT_COMPARED |= frozenset("hessian transform open_interval binomial factorial".split())
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
 NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))
 """Functions in a tree that are read, and held against nothing."""
@@ -125,7 +126,13 @@ ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that are misread as products of letters where their backslash is lost, longer names first."""
-UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf arg sup inf grad div rot curl cov var mod".split())
+CALLED = tuple("eig diag rank trace dim ker span adj sat sinc erf".split())
+"""Functions that are misread as products of letters in front of a bracket."""
+OPERATOR_NAMES = frozenset("Pr dim ker deg gcd hom lg".split())
+"""Functions that LaTeX has a macro for, and are only known by name."""
+UNKNOWN = frozenset(
+    "tr trace rank diag sinc sec csc cot Re Im erf sn cn dn am arg sup inf grad div rot curl cov var mod".split()
+)
 """Functions that are printed upright and are not in the grammar."""
 SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
 SAID |= frozenset(("subject to", "such that", "s.t.", "s.t", "i.e.", "i.e", "since", "while", "as", "etc"))
@@ -133,16 +140,24 @@ SAID |= frozenset(
     "et ou si avec où pour quand donc soit lorsque und oder mit für wenn dove per con para cuando".split()
 )
 """Words between formulas."""
+SHORT_WORDS = frozenset("in on at by of is".split())
+"""Words between formulas that are products of letters where they are not set upright."""
 UNITS = frozenset(
     "m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s "
     "Nm Pa kPa MPa GHz kHz MHz mol C T AU kWh rpm F L".split()
 )
 COUNTERS = frozenset("i j k l m n N M K".split())
 """Letters of which the number of a member of a sequence is made."""
+LAPSED = frozenset("phi varphi Phi varPhi psi Psi chi".split())
+"""Letters of functions of the time that has passed, behind which a difference of times is no factor."""
+ARGUED = LAPSED | frozenset("f F".split())
+"""Letters of functions, behind which a product in brackets is no factor."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())
 """Letters for which a bracket behind them is no factor where time and something else stand in it."""
 FIELDS, OPERATORS = frozenset("f g h F G X".split()), frozenset("D H J".split())
 """Letters of functions along which something is differentiated, and of what is applied to functions."""
+TRANSFORMS = "ELFZ"
+"""Letters of transforms and means, behind which braces are no factor."""
 ANGLES = frozenset("theta vartheta phi varphi psi E M".split())
 """Letters of angles, of which time is no factor."""
 OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))

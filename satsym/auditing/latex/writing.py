@@ -46,6 +46,7 @@ _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argma
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
 _ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
 _ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
+_ENCLOSED |= {"open_interval": (r"\left(", r"\right)")}
 _ENCLOSED |= {"braces": (r"\left\{", r"\right\}"), "angled": (r"\langle ", r" \rangle")}
 _BETWEEN = {
     "cross": r" \times ",
@@ -198,9 +199,9 @@ class _Tex:
         of, letter, end = arguments
         return rf"\lim_{{{self._whole(letter)} \to {self._whole(end)}}} {self._bound(of, _PRODUCT)}", _SUM
 
-    def _gradient(self, arguments: Sequence[Node]) -> tuple[str, int]:
+    def _gradient(self, arguments: Sequence[Node], order: str = "") -> tuple[str, int]:
         by = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
-        return rf"\nabla{by} {self._bound(arguments[0], _ATOM)}", _PRODUCT
+        return rf"\nabla{order}{by} {self._bound(arguments[0], _ATOM)}", _PRODUCT
 
     def _value(self, arguments: Sequence[Node]) -> tuple[str, int]:
         first, *places = arguments
@@ -226,6 +227,14 @@ class _Tex:
     def _indexed(self, arguments: Sequence[Node]) -> tuple[str, int]:
         of, index = arguments
         return rf"{self._bound(of, _ATOM + 1)}_{{{self._whole(index)}}}", _ATOM
+
+    def _transform(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        of, inside = map(self._whole, arguments)
+        return rf"{of}\left\{{{inside}\right\}}", _ATOM
+
+    def _binomial(self, arguments: Sequence[Node]) -> tuple[str, int]:
+        above, below = map(self._whole, arguments)
+        return rf"\binom{{{above}}}{{{below}}}", _ATOM
 
     def _over(self, arguments: Sequence[Node]) -> tuple[str, int]:
         of, mark = map(self._whole, arguments)
@@ -256,6 +265,7 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "circulation": lambda tex, arguments: tex._integral(arguments, r" \cdot", r"\oint"),
     "limit": _Tex._limit,
     "gradient": _Tex._gradient,
+    "hessian": lambda tex, arguments: tex._gradient(arguments, "^2"),
     "value": _Tex._value,
     "power": _Tex._any_power,
     "raised": _Tex._any_power,
@@ -263,6 +273,9 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "in_unit": _Tex._in_unit,
     "indexed_norm": _Tex._indexed_norm,
     "over": _Tex._over,
+    "transform": _Tex._transform,
+    "binomial": _Tex._binomial,
+    "factorial": lambda tex, arguments: (f"{tex._bound(arguments[0], _ATOM)}!", _ATOM),
     "both": _Tex._both,
     "cases": _Tex._cases,
 }
