@@ -125,9 +125,9 @@ class Section:
 
     def _beside(self, row: Judged, printed: Markup, right: Markup) -> Markup:
         """Return the printed content, the derived one, and their difference, side by side."""
-        head = tag("tr", *(tag("th", self._word(key), scope="col") for key in ("printed", "right", "difference")))
-        said = tag("td", *_formulas(self._review.fact(row)))
-        return tag("table", tag("thead", head), tag("tbody", tag("tr", tag("td", printed), tag("td", right), said)))
+        parts = {"printed": printed, "right": right, "difference": joined(*_formulas(self._review.fact(row)))}
+        pairs = (tag("div", tag("dt", self._word(key)), tag("dd", part)) for key, part in parts.items())
+        return tag("dl", *pairs, class_="compared")
 
     def _about(self, row: Judged) -> Markup:
         """Return the subject of a row, marked as English on a page in another language if it is."""
