@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.by_newton import from_guess
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.straight_through import straight_through
+from satsym.solvers.cold_start.swept import from_control, loose
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import tighten
@@ -22,16 +26,22 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.extremal import nothing, solved
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
 
-CORRECTIONS = 15
-"""Corrections of Newton's method from the straight line, where the problem is linear and has one extremal at most."""
+STRAIGHT_THROUGH = 15
+"""Steps within which the straight line leads to a minimum if it does so easily."""
+
+ROUGHLY, TOLERANCE = 3e-2, 1e-7
+"""Sizes of the last step: after the first the mesh is laid anew if the way was hard, the other ends the minimisation.
+"""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -80,12 +90,12 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
         return nothing(instance, Status.NOT_CONVERGED, message)
     else:
         problem = two_point(instance, instance.tf - instance.t0)
-        begun = cold_start(problem, limits)
-        if begun is None:
-            status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
-            message = "no extremal found: Newton's method does not lead from the straight line to a minimum"
-            return nothing(instance, status, message)
-        start = begun
+        start = under_guess(problem, limits) or cold_start(problem, limits)
+        if start.saddle is not None and not problem.control_set.bounded:  # within bounds there may be a minimum
+            start = replace(start, found=start.saddle)
+        elif not start.found.minimum:
+            message = f"no extremal found: {start.found.message}"
+            return unfinished(problem, start.found.curve, message, start.steps, limits)
     found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
@@ -97,6 +107,18 @@ def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: 
     if limits.expired:
         return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time limit reached: {message}", steps)
     return Extremal(problem, path, float("inf"), Status.NOT_CONVERGED, message, steps)
+
+
+def under_guess(problem: TwoPoint, limits: Limits) -> Start | None:
+    """The extremal within the bounds to which sweeps lead from a control that is guessed, if one is and they can."""
+    control = problem.instance.guess.control
+    if not control or not problem.control_set.bounded or not loose(problem):
+        return None
+    curve = from_control(problem, control, limits)
+    if curve is None:
+        return None
+    cost = System(problem, curve.mesh, curve.order).cost(curve)
+    return Start(Attempt(curve, Reason.MINIMUM, 1, cost), Origin.GUESS, 1, bounded=True)
 
 
 def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Attempt:
@@ -140,33 +162,75 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     return Extremal(problem, refined.curve, refined.cost * problem.scale.cost, Status.CONVERGED, message, steps)
 
 
-def cold_start(problem: TwoPoint, limits: Limits) -> Start | None:
-    """The minimum of a problem without bounds to which Newton's method leads at once, if it does.
+def cold_start(problem: TwoPoint, limits: Limits) -> Start:
+    """Find a minimum of a problem without bounds, or an extremal that is none.
 
-    It begins from a straight line in the state space: that between the ends or, where nothing is asked of the end, the
-    uncontrolled motion; or else from what is guessed. What this does not solve is left to the direct search; but where
-    a problem is linear its only extremal is found here, be it a minimum or not.
+    Newton's method begins from a straight line in the state space: that between the ends or, where nothing is asked of
+    the end, the uncontrolled motion; or else from what is guessed. Where it fails, a minimisation follows. What this
+    does not solve is left to the direct search.
 
     Parameters
     ----------
     problem
         Bounds are ignored.
+
+    Raises
+    ------
+    ArithmeticError
+        If the equations at the start are singular.
     """
-    free, spec = problem.relaxed(float("inf")), problem.instance.model.spec
-    line = paths.start(free, paths.first(free))
+    free = problem.relaxed(float("inf"))
+    path = paths.first(free)
+    line = paths.start(free, path)
     with np.errstate(all="ignore"):
-        found = straight_through(free, line, limits)
-        if found is None and spec.linear_quadratic and not problem.control_set.bounded and not limits.expired:
-            found = _extremal(free, line)
+        found = tried(partial(_minimum, free, line, limits))
     if found is None:
-        return None
-    return Start(found, Origin.GUESS if problem.instance.guess else Origin.STRAIGHT_LINE, found.iterations)
+        raise ArithmeticError("the equations of the cold start are singular")
+    if found.minimum and found.curve.in_domain(free.positive):
+        origin = Origin.GUESS if problem.instance.guess else Origin.STRAIGHT_LINE
+        return Start(found, origin, found.iterations)
+    saddle = None if limits.expired else _extremal(free, line)
+    if found.minimum:
+        found = replace(found, reason=Reason.OUT_OF_DOMAIN)
+    return Start(found, Origin.NO_MINIMUM, found.iterations, saddle=saddle)
+
+
+def _minimum(problem: TwoPoint, line: Curve, limits: Limits) -> Attempt:
+    """The minimum to which the straight line leads as a first guess, or why it leads to none."""
+    return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits, STRAIGHT_THROUGH)
 
 
 def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
     """What Newton's method finds from a curve, whether a minimum or not."""
     system = System(problem, start.mesh, STAGES)
-    outcome = newton(system, start, most=CORRECTIONS)
+    outcome = newton(system, start, most=STRAIGHT_THROUGH)
     if outcome is None or not outcome.solved or not outcome.curve.in_domain(problem.positive):
         return None
-    return Attempt(outcome.curve, Reason.EXTREMAL, outcome.iterations, system.cost(outcome.curve))
+    return Attempt(outcome.curve, Reason.SADDLE, outcome.iterations, system.cost(outcome.curve))
+
+
+def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int) -> Attempt:
+    """Minimise from a path of states; the mesh is laid anew as the curve takes shape.
+
+    Parameters
+    ----------
+    path
+        Shape (n, M) for M times.
+    most
+        Steps of the minimisation.
+    """
+    curve = paths.curve(problem, path)
+    steps, hard, tolerance = 0, False, ROUGHLY
+    while True:
+        found = minimise(System(problem, curve.mesh, STAGES), curve, limits, tolerance, max(most - steps, 1))
+        steps, hard = steps + found.iterations, hard or found.hard
+        found = replace(found, iterations=steps, hard=hard)
+        extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)
+        if not (extremal or found.reason is Reason.OUTGROWN) or not found.curve.in_domain(problem.positive):
+            return found
+        if extremal and tolerance == TOLERANCE:
+            return found
+        if steps >= most or limits.expired:
+            return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
+        tolerance = TOLERANCE if extremal else ROUGHLY
+        curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), STAGES)

@@ -13,7 +13,8 @@ from sympy import Float, Matrix, exp, eye
 from satsym import instance
 from satsym.instance import Guess, Instance
 from satsym.solution import Certificate, Competitors, Kind, Progress, Solution
-from satsym.solvers import by_search, solve
+from satsym.solvers import solve
+from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.competitors.comparing import none_conceivable
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED, Compared, Comparison
@@ -130,7 +131,7 @@ def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:
 
     def solver(one: Instance, progress: Progress | None) -> Solution:
         start = one.guess or Guess(control={"u1": (0.4,)})
-        return replace(by_search.collocation(replace(one, guess=start), progress), instance=one)
+        return replace(two_point_method.solve(replace(one, guess=start), progress), instance=one)
 
     costs = dearest(*numbers)
     first = solver(case, None)
@@ -167,7 +168,7 @@ def test_of_two_ways_that_cost_nearly_the_same_the_cheaper_one_is_known(tmp_path
 
     one, other = (solve(tilted(by)) for by in (1e-5, -1e-5))
     assert one.x[1].mean() * other.x[1].mean() < 0.0
-    dearer = by_search.collocation(replace(one.instance, guess=starting_from(other).guess))
+    dearer = two_point_method.solve(replace(one.instance, guess=starting_from(other).guess))
     assert dearer.x[1].mean() * other.x[1].mean() > 0.0
     assert 1e-6 < dearer.objective / one.objective - 1.0 < 1e-4
     _, better = examined(replace(dearer, instance=one.instance), np.inf)

@@ -13,16 +13,14 @@ from satsym.solvers.certificate import certify, conditions
 from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.reintegration.flow import flow
 from satsym.solvers.certificate.reintegration.segments import segments
-from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.arclength import extremals
-from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.collocation.scaling import two_point as to_scaled
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.system import System
-from satsym.solvers.improving import starting_from
+from satsym.solvers.iteration import Limits, computed
+from satsym.solvers.two_point import cold_start
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 
@@ -31,6 +29,8 @@ EACH, STUDY, SHARE = 6, 204, 17
 
 One case of a test has a whole certificate: competitors take longer than solving.
 """
+
+SECONDS = 60.0
 
 
 def scaled(number: int) -> TwoPoint:
@@ -93,12 +93,8 @@ def test_extremals_are_followed_round_a_fold() -> None:
         moved = replace(wanted.instance, final=final)
         return replace(wanted, instance=moved, final=final_argument(moved))
 
-    start = at(0.0)
-    known = replace(start, instance=starting_from(by_search.collocation(start.instance)))
-    begun = paths.start(known)
-    found = newton(System(known, begun.mesh, STAGES), begun)
-    assert found is not None
-    assert found.solved
+    found = cold_start(at(0.0), Limits(500, computed() + SECONDS)).found
+    assert found.minimum
     points = list(islice(extremals(at, found.curve), 12))
     fractions = np.array([point.fraction for point in points])
     fold = int(fractions.argmax())

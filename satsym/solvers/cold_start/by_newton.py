@@ -10,6 +10,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.origin import Origin, Start
+from satsym.solvers.cold_start.swept import on_mesh
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.jumping import found, located
 from satsym.solvers.collocation.attempt import Attempt, Reason
@@ -40,21 +41,21 @@ def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
     tau = np.linspace(0.0, 1.0, z.shape[1])
     for intervals in MESHES:
         mesh = np.linspace(0.0, 1.0, intervals + 1)
-        curve = paths.on_mesh(problem, tau, z, mesh)
+        curve = on_mesh(problem, tau, z, mesh)
         if found(problem, curve):
             outcome = located(problem, curve, STAGES, intervals)
         else:
             outcome = newton(System(problem, mesh, STAGES), curve, most=40)
         if outcome is not None and outcome.solved and outcome.curve.in_domain(problem.positive):
             cost = System(problem, outcome.curve.mesh, STAGES).cost(outcome.curve)
-            return Attempt(outcome.curve, Reason.EXTREMAL, outcome.iterations, cost)
+            return Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, cost)
     return None
 
 
 def _settled(problem: TwoPoint, z: Array, limits: Limits) -> Attempt | None:
     """The extremal with nodes where bounds are met; ``None`` where these do not stand still."""
     tau = np.linspace(0.0, 1.0, z.shape[1])
-    curve = paths.on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+    curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
     found = tried(lambda: settled(problem, curve, STAGES, max(len(curve.mesh) - 1, MESHES[0]), limits))
     if found is None or not found.solved or not found.curve.in_domain(problem.positive):
         return None

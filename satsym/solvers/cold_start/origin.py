@@ -13,6 +13,7 @@ class Origin(str, Enum):
 
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
+    NO_MINIMUM = "straight line, because no minimum was found"
     LAST_ANSWER = "last answer"
     COLD_START = "cold start"
 
@@ -22,13 +23,15 @@ class Start:
     """An extremal of low order from which a method starts."""
 
     found: Attempt
-    """A minimum, or the only extremal."""
+    """The cheapest minimum, or the last attempt, and why that is none."""
     origin: Origin
     """From where it was found."""
     steps: int
     """Steps of all attempts."""
     bounded: bool = False
     """Whether it was looked for within the bounds at once."""
+    saddle: Attempt | None = None
+    """An extremal that is no minimum, where no minimum was found."""
 
     @property
     def named(self) -> str:

@@ -89,13 +89,6 @@ def on(problem: TwoPoint, path: States, mesh: Array) -> Curve:
     return Curve(mesh, nodes, stages, problem.theta)
 
 
-def on_mesh(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
-    """States and costates (2n, M) at times (M,) as a curve on a mesh."""
-    at = stage_times(mesh, STAGES)
-    nodes, stages = (np.array([np.interp(where, tau, row) for row in z]) for where in (mesh, at.ravel()))
-    return Curve(mesh, nodes, stages.reshape(len(z), *at.shape), problem.theta)
-
-
 def _line(problem: TwoPoint) -> States:
     line = straight(problem)
     return lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau

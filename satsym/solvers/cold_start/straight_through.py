@@ -35,10 +35,6 @@ SHORTER = 0.8
 """Share of the correction before that the next one may have. The first raises the costates from zero to their size,
 whatever that is, so that the second is not to be compared with it closely."""
 
-CLOSE_CORRECTION = 1e-3
-"""Correction that need not be shorter than the one before: of linear problems the second is rounding, and the third
-shows what more stages change."""
-
 
 def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt | None:
     """The minimum to which Newton's method leads at once.
@@ -71,7 +67,7 @@ def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve,
             step = linearised.step(residual)
             moved = curve.moved(step, 1.0)
             size = step.size(moved)
-            if not size < max(before, CLOSE_CORRECTION) or within_domain(problem, curve, step) < 1.0:
+            if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
             curve, before = moved, SHORTER * size
             passed.append((system, curve, size))
@@ -83,7 +79,7 @@ def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve,
             elif negative_directions(problem, curve, linearised.matching):
                 return None
             else:
-                return Attempt(curve, Reason.EXTREMAL, steps, linearised=linearised)
+                return Attempt(curve, Reason.MINIMUM, steps, hard=False, linearised=linearised)
         except np.linalg.LinAlgError:
             return None
     return None

@@ -12,8 +12,17 @@ from satsym.solvers.collocation.linearised import Linearised
 class Reason(Enum):
     """Why an attempt ended, with the words for it."""
 
+    MINIMUM = "minimum"
+    SADDLE = "saddle"
     EXTREMAL = "extremal"
+    """Nobody asked whether it is a minimum."""
+    OUTGROWN = "the solution needs more mesh intervals than are allowed"
+    SINGULAR = "the equations are singular"
+    NOT_FINITE = "not finite"
+    TIME_UP = "time limit reached"
+    NO_DESCENT = "no descent"
     NO_CONVERGENCE = "no convergence in {} steps"
+    OUT_OF_DOMAIN = "the minimum lies outside the domain of the model"
     BLOCKED = "the relaxed bounds could be tightened only by {:.0%}"
     UNSETTLED = (
         "the times at which bounds become active do not converge: try wider bounds, another tf, or --continue "
@@ -34,6 +43,9 @@ class Attempt:
     """Linear systems that were solved."""
     cost: float = float("nan")
     """Scaled cost there; NaN where it was not asked for."""
+    hard: bool = True
+    """Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima may then
+    be cheaper."""
     linearised: Linearised | None = None
     """The equations there, where they are at hand."""
     error: float = float("inf")
@@ -42,9 +54,14 @@ class Attempt:
     """What the words of the reason leave open."""
 
     @property
+    def minimum(self) -> bool:
+        """Whether it is a strict local minimum of the discretised problem."""
+        return self.reason is Reason.MINIMUM
+
+    @property
     def solved(self) -> bool:
-        """Whether it is an extremal."""
-        return self.reason is Reason.EXTREMAL
+        """Whether it is a minimum, or an extremal of which nobody asked more."""
+        return self.reason in (Reason.MINIMUM, Reason.EXTREMAL)
 
     @property
     def message(self) -> str:

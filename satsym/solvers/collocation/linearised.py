@@ -86,8 +86,15 @@ class Linearised:
         return self._blocks.solve(residual.by_interval[:, None]).reshape(shape)
 
 
-def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
+def linearise(
+    system: System, curve: Curve, residual: Residual, jacobian: Array, at_end: Array | None = None
+) -> Linearised:
     """Eliminate the stages, interval by interval and all intervals in one call, and factor what remains.
+
+    Parameters
+    ----------
+    at_end
+        The boundary residuals by the end, if others are meant than those of the problem.
 
     Raises
     ------
@@ -115,7 +122,8 @@ def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array)
         if system.problem.free_time:
             by_theta[k, :, -1] += one.leap * (one.drift * system.mesh[k + 1] / one.speed)
     ends = system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta)
-    matching = Matching(transition, by_theta, ends[0], ends[1], mixed=system.problem.homogeneous)
+    by_end = ends[0] if at_end is None else at_end
+    matching = Matching(transition, by_theta, by_end, ends[1], mixed=system.problem.homogeneous)
     return Linearised(system, blocks, matching, response, extra, residual, solved[:, n])
 
 

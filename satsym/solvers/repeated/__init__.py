@@ -279,7 +279,7 @@ class _ByCollocation:
         if not least or turn > meshes.COARSEST:
             return None
         cost = system.cost(outcome.curve)
-        found = replace(outcome, reason=Reason.EXTREMAL, cost=cost)
+        found = replace(outcome, reason=Reason.MINIMUM, cost=cost, hard=False)
         return self._sound(problem, found, limits)
 
     def straight(self, case: Instance, limits: Limits) -> Extremal | None:

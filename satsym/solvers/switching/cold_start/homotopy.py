@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from satsym.instance import Instance
-from satsym.solvers.cold_start.paths import on_mesh
+from satsym.solvers.cold_start.swept import on_mesh
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.accuracy.refinement import refine
 from satsym.solvers.collocation.continuation import corners, through
