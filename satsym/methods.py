@@ -106,7 +106,7 @@ def _no_sweep(asked: Asked) -> str:
 
 SWEEP = Method(
     "sweep",
-    "forward-backward sweeps with quasi-Newton steps, for a free final state",
+    "forward-backward sweeps, for a free final state",
     "satsym.solvers.by_sweeps:solve",
     certified=False,
     relaxed=True,

@@ -227,14 +227,14 @@ def test_equilibria_are_found_from_where_one_looks():
 def test_a_model_without_an_equilibrium_says_so():
     model = pendulum()
     falling = replace(model, functions=model.functions | {"dynamics": lambda t, x, u, p: (x[1], -1.0)})
-    with pytest.raises(BadInput, match=r"no equilibrium of pendulum was found from the start \(0, 0\)"):
+    with pytest.raises(BadInput, match=r"no equilibrium of pendulum was found from the initial point \(0, 0\)"):
         linearise(falling)
 
 
 def test_a_model_that_rests_for_an_instant_has_no_equilibrium():
     model = pendulum()
     forced = {"dynamics": lambda t, x, u, p: (x[1], -np.sin(x[0]) + np.sin(t) + (u[0] if u else 0.0))}
-    only_then = r"vanish at \(0, 0\) only at t = 0, so this point is not an equilibrium; state a reference"
+    only_then = r"vanish at \(0, 0\) only at t = 0, so this point is not an equilibrium; declare a reference"
     with pytest.raises(BadInput, match=only_then):
         linearise(replace(model, functions=model.functions | forced))
 

@@ -214,7 +214,7 @@ def test_a_slip_that_is_carried_on_is_wrong_even_where_the_document_has_it_right
     ]
     found = judged(tmp_path, rows)
     assert [entry.verdict for entry in found.values()] == ["wrong", "confirmed", "misprint"]
-    assert "right in second" in found["first"].diagnosis
+    assert "right form in second" in found["first"].diagnosis
     assert "propagates to third" in found["first"].diagnosis
     assert "The same slip occurs in third" in found["first"].diagnosis
     assert "follows from first as printed, and contains no other error" in found["third"].diagnosis

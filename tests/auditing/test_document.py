@@ -71,7 +71,7 @@ def test_displays_have_number_label_section_and_place(paper: Path) -> None:
 def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["read", "paper.tex", "--model", "polar_orbit"]) == 0
     out = capsys.readouterr().out
-    assert "7 rows drafted, 0 confirmed rows retained" in out
+    assert "7 ledger rows drafted, 0 confirmed rows kept" in out
     assert "paper.tex:22: not read: an integral without a differential" in out
     ledger = paper.with_suffix(".ledger.toml")
     found = {row.key: row.verdict for row in audit(auditing.read(ledger))}
@@ -82,7 +82,7 @@ def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pyte
     ledger.write_text("[[row]]\n".join([head, confirmed, *others]))
     paper.write_text(PAPER.replace(r"\dot x_1 &= x_2, \nonumber\\", ""))
     assert main(["read", "paper.tex"]) == 0
-    assert "5 rows drafted, 1 confirmed rows retained" in capsys.readouterr().out
+    assert "5 ledger rows drafted, 1 confirmed rows kept" in capsys.readouterr().out
     again = ledger.read_text()
     assert 'says = "Newton"' in again
     assert again.count("draft = true\n") == 5

@@ -123,7 +123,7 @@ def test_the_regulator_of_a_double_integrator_is_known() -> None:
 
 @pytest.mark.parametrize("given", [{}, {"Q": np.eye(2)}, {"R": [[1]]}])
 def test_weights_that_nobody_states_are_not_made_up(given: dict[str, Any]) -> None:
-    with pytest.raises(BadInput, match="double integrator states no weights; give both Q and R"):
+    with pytest.raises(BadInput, match="double integrator has no weights; give both Q and R"):
         regulators.regulator(DOUBLE, **given)
 
 

@@ -30,7 +30,7 @@ def test_a_number_that_is_set_by_a_wrong_name(run: Run, mistake: str) -> None:
     code, out, err = run("solve", "return-to-orbit-005", "--set", given)
     assert (code, out, err.count("\n")) == (3, "", 1)
     assert instead in err
-    assert "parameters.omega" not in err or "known here" in err
+    assert "parameters.omega" not in err or "available" in err
 
 
 @pytest.mark.parametrize("mistake", CHANGES)
@@ -57,6 +57,6 @@ def test_what_only_a_solver_finds_wrong_names_the_file_too(run: Run, tmp_path: P
 
 def test_a_name_of_something_else_leads_to_the_instances(run: Run, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text("")
-    for name, instead in (("mine", 'did you mean "mine.toml"?'), ("fuller-x", '"fuller"'), ("hill", "known here")):
+    for name, instead in (("mine", 'did you mean "mine.toml"?'), ("fuller-x", '"fuller"'), ("hill", "available")):
         assert instead in run("solve", name)[2]
     assert "instances of this model: ends-1-given" in run("solve", "polar_orbit")[2]

@@ -77,7 +77,7 @@ def test_every_smaller_class_has_its_fields(line: tuple[str, str]) -> None:
 
 
 def test_reserved_names_are_those_that_are_refused() -> None:
-    section = PAGE.partition("## Names that are taken\n")[2].partition("\n## ")[0]
+    section = PAGE.partition("## Reserved names\n")[2].partition("\n## ")[0]
     fixed, made = (part for part in section.split("\n\n") if part.startswith("`") and part.count("`, `") > 5)
     assert re.findall(r"`(\w+)`", fixed) + re.findall(r"`(\w+)`", made) == sorted(reserved(), key=of_users)
 
@@ -95,7 +95,7 @@ def test_refusals_are_quoted_as_they_are_given() -> None:
     ]
     source = "".join(path.read_text(encoding="utf-8") for path in files)
     text = re.sub(r"""["']\s*\n\s*f?["']""", "", source)
-    quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When it is refused")[2], re.MULTILINE)[1:]
+    quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When a model is refused")[2], re.MULTILINE)[1:]
     quoted = [line for line in quoted if line != "---"]
     assert quoted
     for message in quoted:

@@ -94,7 +94,7 @@ def test_of_all_normals_to_an_ellipse_those_to_nearest_points_are_proved(start: 
             proof = prove(case, lambda end=end: straight(case, start, end, 1))
             assert proof.status is (Outcome.PROVED if nearest else Outcome.NOT_PROVED), proof.reason
             assert held(proof, sum((a - b) ** 2 for a, b in zip(start, end, strict=True)) / 2)
-            assert nearest or "focal point of the end" in proof.reason
+            assert nearest or "focal point of the final conditions" in proof.reason
             seen.add(nearest)
     assert seen == {True, False}
 

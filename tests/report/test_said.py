@@ -88,7 +88,7 @@ def test_nothing_is_translated_that_is_nowhere_said() -> None:
     ] == []
 
 
-MET_AT_NONE = ("no final time after the start satisfies", "the given final time <when> does not satisfy")
+MET_AT_NONE = ("no final time after the initial time satisfies", "the given final time <when> does not satisfy")
 WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
 MISPLACED = (("not after", "a later time"), ("too far from", "a time closer to t0"))
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"

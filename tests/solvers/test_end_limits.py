@@ -213,7 +213,7 @@ def test_an_inequality_in_time_of_which_nothing_is_proved_is_not_called_infeasib
     assert never(instance) == ""
     assert never(satsym.Instance.of(WINDOW, **given).case) == ""
     given["parameters"] = {"c": 0.5, "k": -1.0}
-    assert "no final time after the start" in never(satsym.Instance.of(BACK_BY, **given).case)
+    assert "no final time after the initial time" in never(satsym.Instance.of(BACK_BY, **given).case)
 
 
 def test_a_method_that_finds_nothing_leaves_the_answer_to_the_search():

@@ -121,7 +121,7 @@ def test_free_ends_have_none_where_time_costs_more_than_moving_saves(c0):
     for guess in (None, 0.3):
         found = by_search.collocation(weighed(FIVE, c0, guess))
         assert found.status is Status.NO_MINIMISER
-        assert "shorter is always cheaper" in found.message
+        assert "shorter duration is always cheaper" in found.message
 
 
 def test_free_ends_have_a_short_best_time_where_moving_just_pays():

@@ -94,7 +94,7 @@ def test_the_same_problem_as_a_cost_has_the_opposite_objective(found: Solution) 
         ({"unit": "furlongs!"}, r'^largest_gain: unit: the unit "furlongs!" cannot be read'),
         (
             {"running_cost": Integer(0), "terminal_cost": Integer(0)},
-            r"^largest_gain: no objective; state a running_cost \(1 for minimum time\) or a terminal_cost$",
+            r"^largest_gain: no objective; give a running_cost \(1 for minimum time\) or a terminal_cost$",
         ),
     ],
 )

@@ -54,7 +54,7 @@ def test_each_row_of_a_map_has_the_deeper_of_two_wells_and_says_on_which_side_it
     assert len(set(zip(right, mapped["branch"], strict=True))) == 2, "a branch is a well"
     table = mapped["branch"].reshape(9, 5)
     assert found["borders"] == (np.diff(table, axis=0) != 0).sum() + (np.diff(table, axis=1) != 0).sum()
-    assert f"{found['changed']} rows changed to a branch with a lower cost" in repr(mapped)
+    assert f"{found['changed']} cases changed to a branch with a lower cost" in repr(mapped)
 
 
 @pytest.mark.slow

@@ -121,7 +121,7 @@ def test_rows_of_another_study_are_never_taken(tmp_path: Path, monkeypatch: pyte
     interrupted(tmp_path / "a", asked(6), 4)
     (tmp_path / "a/study.json").unlink()
     before = (tmp_path / "a" / parts.LINES).read_bytes()
-    with pytest.raises(BadInput, match="rows of another study"):
+    with pytest.raises(BadInput, match="cases of another study"):
         reports.carry_out(asked(6, high=7.0), tmp_path / "a", Here, 1)
     assert (tmp_path / "a" / parts.LINES).read_bytes() == before
     opened = parts.opened

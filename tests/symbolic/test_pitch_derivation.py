@@ -189,7 +189,7 @@ def test_drives_that_do_not_determine_the_motion_are_refused() -> None:
         derive(replace(model, drives={torque: drive, sp.Symbol("brake", real=True): torque}))
     with pytest.raises(DerivationError, match="uses undeclared symbols: brake"):
         derive(replace(model, torques={"body": sp.Symbol("brake", real=True)}))
-    with pytest.raises(DerivationError, match="act on the bodies"):
+    with pytest.raises(DerivationError, match="act on declared bodies"):
         derive(replace(model, torques={"panel": sp.Integer(0)}))
 
 

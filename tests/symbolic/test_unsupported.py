@@ -120,7 +120,7 @@ def test_a_terminal_cost_alone_makes_a_problem() -> None:
 
 
 def test_neither_cost_is_refused_with_what_least_time_needs() -> None:
-    with pytest.raises(BadInput, match=r"no objective; state a running_cost [(]1 for minimum time[)] or"):
+    with pytest.raises(BadInput, match=r"no objective; give a running_cost [(]1 for minimum time[)] or"):
         satsym.derive(stated(running_cost=sp.Integer(0), control_set="box"))
 
 

@@ -129,7 +129,7 @@ class Derived:
             yield self._equation(address, in_lines(latex, typeset.terms(one.value)), 0.0)
 
     def _quantities(self) -> Markup:
-        """A row for each quantity; a unit or a value that none of them has takes no column."""
+        """Return a row for each quantity; a unit or a value that none of them has takes no column."""
         model, texts = self._derivation.model, self._texts
         heads = [tag("th", texts.get(*key), scope="col") for key in _HEADS]
         rows = [self._quantity(v) for vs in (model.states, model.controls, model.parameters) for v in vs]
@@ -138,7 +138,7 @@ class Derived:
         return scrolled(tag("table", tag("tr", *(heads[k] for k in kept)), *body, class_="facts"))
 
     def _quantity(self, v: Variable) -> tuple[tuple[bool, ...], tuple[Markup, ...]]:
-        """Whether each cell says something, and the cells."""
+        """Tell whether each cell says something, and return the cells."""
         value, said = self._values.get(v.symbol), self._texts.phrase(v.meaning)
         unit = unit_text(self._units.get(v.symbol, v.unit))
         return (True, True, bool(unit), value is not None, True), (

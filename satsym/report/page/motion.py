@@ -77,7 +77,7 @@ def motion(scene: Scene, texts: Texts) -> Markup:
 
 
 def _from_reference(scene: Scene, orbit: Orbit, texts: Texts) -> Markup | None:
-    """The path as it is seen from the reference, where in space the two could not be told apart."""
+    """Draw the path relative to the reference if the two could not be distinguished in space."""
     if orbit.relative is None or orbit.reference is None:
         return None
     seen = {"free": orbit.free_relative, "path": orbit.relative}
@@ -175,7 +175,7 @@ def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
 
 
 def _region(field: Placing, low: Array, high: Array, to: Placing) -> str:
-    """Where a field is positive, as far as the picture goes."""
+    """Return the outline of the region of the picture in which a field is positive."""
     from contourpy import FillType, contour_generator
 
     half, middle = 0.5 * float((high - low).max()), 0.5 * (low + high)
@@ -187,7 +187,7 @@ def _region(field: Placing, low: Array, high: Array, to: Placing) -> str:
 
 
 def _line(points: Array) -> str:
-    """A path through points of the picture, in pieces where some are not known; none twice in turn."""
+    """Return a path through points of the picture, in pieces where some are unknown, without repeated points."""
     found, before = "", ""
     for x, y in points.T:
         place = f"{x:.1f} {y:.1f}" if np.isfinite(x) and np.isfinite(y) else ""

@@ -229,7 +229,7 @@ class Swept:
 
     @classmethod
     def of(cls, model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> Swept | None:
-        """The path of a motion with a radial and a transverse velocity, known by what they are said to be; or none."""
+        """Return the path of a motion whose states have the meanings of a radial and a transverse velocity, if any."""
         meant = {state.meaning: i for i, state in enumerate(model.spec.states)}
         radial, across = meant.get("radial velocity"), meant.get("transverse velocity")
         named = [i for i, state in enumerate(model.spec.states) if state.symbol in ("r", "rho")]

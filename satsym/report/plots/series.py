@@ -191,7 +191,7 @@ def constraints(scene: Scene) -> list[Series]:
 
 
 def unseen(scene: Scene, in_path: bool) -> list[Series]:
-    """The path constraints that neither the panel of a state shows nor, where that has some, the path."""
+    """Return the path constraints that neither the panel of a state nor the picture of the path shows."""
     seen = {one.name for one in scene.restrictions if len(one.states) == 1 or in_path}
     return [one for one in constraints(scene) if one.name not in seen]
 

@@ -126,7 +126,7 @@ def others(
         What was found beside earlier answers. It comes first, and what is found now is added.
     """
     past = Past() if past is None else past
-    past.way = past.way or way
+    past.first = past.first or way
     yield from past.tried
     for one in _further(instance, limits, exact, cost, cost_of, loose, way, hidden, past):
         past.tried.append(replace(one, exact=None))
@@ -150,7 +150,7 @@ def _further(
     quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
-    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.way, first=first), first):
+    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.first, first=first), first):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
         else:

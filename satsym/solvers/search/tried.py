@@ -42,7 +42,7 @@ class Past:
     ----------
     answers
         How many dearer answers there were.
-    way
+    first
         Times and states of the first of them, along which the coarse mesh is laid.
     tried
         What starts came to, in their order.
@@ -51,6 +51,6 @@ class Past:
     """
 
     answers: int = 0
-    way: tuple[Array, Array] | None = None
+    first: tuple[Array, Array] | None = None
     tried: list[Tried[Any]] = field(default_factory=list)
     seen: list[tuple[float, float]] = field(default_factory=list)
