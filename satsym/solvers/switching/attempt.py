@@ -52,6 +52,7 @@ class Origin(Enum):
     REST = "rest"
     REACH = "the reachable set"
     SMOOTHED = "the regularised problem with the weight {:.1e}"
+    MINIMUM_TIME = "the structure of the minimum-time solution"
     SEARCH = "a direct search"
 
 

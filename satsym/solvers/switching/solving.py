@@ -20,11 +20,15 @@ from satsym.solvers.switching.cold_start import homotopy
 from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.magnitudes import costs, moving
+from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.structure import REST, Course, Guess, Structure
 from satsym.status import BadInput, Status
 
 NOT_FOUND = "no extremal found: no start of the search leads to one"
 """What is said where that is all that is known."""
+
+SHORTFALL = 1e-9
+"""By this share of it a given time may fall short of the least."""
 
 LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
 """Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
@@ -82,6 +86,8 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
             limits.tell(endless.objective, history[-1].residual if history else math.nan)
             return replace(endless, iterations=len(history), history=tuple(history), wall_s=time.perf_counter() - began)
         if isinstance(found, homotopy.Stopped):
+            found = _by_least_time(instance, found, limits, search)
+        if isinstance(found, homotopy.Stopped):
             return without(
                 instance, _advised(instance, _explained(instance, found, limits, search)), tuple(history), began
             )
@@ -122,6 +128,34 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
             cheaper = known is None or endless.objective < known.trajectory.cost(instance)
             return replace(endless, message=f"{endless.message}; a longer time has the same cost") if cheaper else None
     return None
+
+
+def _by_least_time(
+    instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search
+) -> Exact | homotopy.Stopped:
+    """What the least time says: a structure where the given one is hardly longer, or that it is too short.
+
+    The latter where the motion is linear: only there is it known that nothing arrives earlier.
+    """
+    hurried = minimum_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
+    found = _found(hurried, limits, search) if hurried is not None else stopped
+    if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
+        return stopped
+    least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
+    if found.origin is Origin.REACH and least > given * (1.0 + SHORTFALL):
+        message = (
+            f"the minimum time to the given final state is {least:.10g} (structure {name}), but only {given:.10g} is "
+            f"allowed"
+        )
+        return replace(stopped, status=Status.INFEASIBLE, message=message)
+    near = attempt(instance, _with_coasts(instance, found), limits) if least < given else None
+    if near is not None:
+        return replace(near, origin=Origin.MINIMUM_TIME)
+    if stopped.status is Status.INFEASIBLE:
+        return stopped
+    alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= SHORTFALL else ""
+    message = f"{stopped.message}; the minimum time to the given final state is {least:.10g} (structure {name}){alone}"
+    return replace(stopped, message=message)
 
 
 def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search) -> homotopy.Stopped:
@@ -166,6 +200,28 @@ def _resting(instance: Instance) -> Guess | None:
         return None
     rest = Structure(((REST,),) * len(weights))
     return Guess(rest, np.zeros(0), np.zeros(len(instance.initial)), instance.tf)
+
+
+def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
+    """The structure of the minimum time with a short rest at each switch, where |u| costs and some time is left."""
+    at, structure = hurried.refined.at, hurried.refined.structure
+    assert instance.tf is not None
+    spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)
+    levels, times, rates = [], [], []
+    weights = costs(instance)
+    for arc in hurried.refined.arcs:
+        if arc.event is not None:
+            _, rate = arc.field.switching(arc.end, arc.after.tolist(), arc.event.control)
+            rates.append(2.0 * weights[arc.event.control] / max(abs(rate) * spare, 1e-300))
+    for row, own, weight in zip(structure.levels, structure.by_control(at.times), weights, strict=True):
+        if weight > 0.0:
+            levels.append((row[0], *(level for after in row[1:] for level in (REST, after))))
+            times += [t + k * spare for t in own.tolist() for k in (-0.5, 0.5)]
+        else:
+            levels.append(row)
+            times += own.tolist()
+    factor = float(np.mean(rates)) if rates else 1.0
+    return Guess(Structure(tuple(levels)), np.array(times), factor * at.costates, instance.tf)
 
 
 def refuse(instance: Instance) -> None:
