@@ -26,8 +26,9 @@ from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURAT
 STARTS = 48
 """Starts that are tried at most."""
 
-ITERATIONS = 300
-"""Iterations of the interior-point code for a start."""
+ITERATIONS, ASTRAY = 300, 50
+"""Iterations of the interior-point code for a start; and for a competitor on a bent way to a drawn end, which need not
+lead anywhere: such a motion is found soon or hardly ever."""
 
 WEAK, NEARLY_WITHIN = 7, 1.5
 """Starts after which those come that begin without bounds of controls, and the largest controls of such a motion,
@@ -87,7 +88,10 @@ def started(
         if limits.expired:
             return
         with np.errstate(all="ignore"):
-            found = _less_smoothed(programmes, plan, limits, most if number else ITERATIONS, known)
+            bent = most < ITERATIONS and plan.drawn and plan.noise
+            found = _less_smoothed(
+                programmes, plan, limits, min(most, ASTRAY) if bent else most if number else ITERATIONS, known
+            )
         yield plan, found
 
 
