@@ -31,8 +31,8 @@ hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
-SHARE = 20
-"""Of the cases of slow tests every twentieth runs, unless all are asked for."""
+SHARE = 40
+"""Of the cases of slow tests every fortieth runs, unless all are asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
