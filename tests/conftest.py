@@ -84,7 +84,7 @@ def whole(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture(scope="session")
 def sample(whole: bool) -> Callable[[Iterable[Any]], list[Any]]:
-    """What is looked at of many cases in one test: every twentieth, or all if all are asked for."""
+    """What is looked at of many cases in one test: every fortieth, or all if all are asked for."""
     step = 1 if whole else SHARE
     return lambda cases: list(cases)[::step]
 
