@@ -19,7 +19,7 @@ def spec_of(instance: Instance) -> ProblemSpec:
 
     By convention the numbers of such an instance are multiples of those of a circular orbit, so that units would
     mislead. It is known by its gravitational parameter, or else by a length and an angular velocity that the model
-    takes to be 1 unless it is told; a body whose parameter is exactly 1 in the units of its model loses them as well.
+    takes to be 1 by default; a body whose parameter is exactly 1 in the units of its model loses them as well.
     Files and JSON keep the units of the model.
     """
     model = instance.model

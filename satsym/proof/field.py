@@ -24,6 +24,10 @@ DEEPEST = 10
 """Largest number of times a step is halved to show that X is regular on it."""
 
 
+class _FormNotPositive(NotProved):
+    """The field is regular, but its quadratic form at the final time is not shown to be positive."""
+
+
 @dataclass(frozen=True)
 class Regularity:
     """A field of extremals that was shown to be regular.
@@ -51,17 +55,16 @@ def regular_field(shooting: Shooting, passed: Pass) -> Regularity:
     NotProved
         If no choice of W(t0) gives one.
     """
-    failure = ""
+    failure = NotProved()
     for called, w in _starts(shooting, passed):
         for i in shooting.statement.free:
             w[i, i] = arb(0)  # so that V(t0, x) is the same for all of these
         try:
             return _followed(shooting, passed, w, called)
         except NotProved as error:
-            failure = failure or str(error)
-            if "end" not in failure:
-                failure = str(error)
-    raise NotProved(failure)
+            if not isinstance(failure, _FormNotPositive):  # the first of these says most
+                failure = error
+    raise NotProved(str(failure))
 
 
 def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regularity:
@@ -76,7 +79,7 @@ def _followed(shooting: Shooting, passed: Pass, w: Matrix, called: str) -> Regul
             time += sum((step.h for step in segment.steps), arb(0))
     form = passed.end.second_variation(w)
     if form.nrows() and not positive(form):
-        raise NotProved(
+        raise _FormNotPositive(
             "the second variation at the final time could not be shown to be positive (a focal point of the final "
             "conditions?)"
         )

@@ -53,7 +53,7 @@ def test_with_a_free_end_the_focal_time_is_half_of_it(tf: float, wanted: Outcome
     case, found = between(None, tf)
     proof = prove(case, lambda: found)
     assert proof.status is wanted
-    assert ("conjugate point" in proof.reason) is (wanted is Outcome.NOT_PROVED)
+    assert ("focal" in proof.reason) is (wanted is Outcome.NOT_PROVED)
 
 
 def test_costates_that_lead_elsewhere_are_not_proved() -> None:

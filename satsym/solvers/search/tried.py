@@ -36,12 +36,12 @@ class Tried(Generic[Answer]):
 
 @dataclass
 class Past:
-    """What comparisons with earlier answers, which were dearer, came to: the next one goes on where they ended.
+    """Results of comparisons with earlier answers of a higher cost: the next comparison goes on where they ended.
 
     Attributes
     ----------
     answers
-        How many dearer answers there were.
+        Number of these answers.
     first
         Times and states of the first of them, along which the coarse mesh is laid.
     tried
