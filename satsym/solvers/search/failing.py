@@ -27,6 +27,9 @@ from satsym.solvers.switching.solving import NOT_FOUND
 from satsym.solvers.switching.throttled import signs, switched
 from satsym.status import Status
 
+Reason = tuple[Status, str]
+"""The status of an instance without an answer, and a message."""
+
 BETWEEN, FAINT_SLOPE, LASTING = 0.05, 1e-2, 0.35
 """Share of the width of its range by which a norm is off its bounds, share of the cost of a norm below which its
 switching function decides nothing, and share of the time for which nothing decides it."""
@@ -54,7 +57,7 @@ PUSHING = 1e-2
 """Share of the largest multiplier from which on a constraint stands against the others."""
 
 
-def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status, str]:
+def why(instance: Instance, limits: Limits, early: bool = False) -> Reason:
     """The status of an instance of which no start leads to an extremal, and a message.
 
     Parameters
@@ -83,7 +86,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> tuple[Status
         by_jumps = f"{message}; {_jumping(several)}" if several else message
         return Status.NOT_CONVERGED, _undecided(instance, limits) or by_jumps
     if limits.expired:
-        return Status.NOT_CONVERGED, message
+        return Status.TIME_LIMIT if limits.late else Status.NOT_CONVERGED, message
     if near.undecided or (early and near.distance <= FAR_OFF):
         return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls might reach it"
     return Status.INFEASIBLE, f"{near.message}; {message}"
@@ -95,7 +98,7 @@ def _jumping(controls: list[str]) -> str:
     return f"H may have several minimisers in {', '.join(controls)}, and {advice}"
 
 
-def _endless(instance: Instance, limits: Limits) -> tuple[Status, str] | None:
+def _endless(instance: Instance, limits: Limits) -> Reason | None:
     """Why no duration is the cheapest; ``None`` where costs at some durations do not show that."""
     longer, shorter = (coarse.costs_by_duration(instance, limits, shares) for shares in (LONGER, SHORTER))
     both = longer + shorter

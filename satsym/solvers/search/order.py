@@ -22,7 +22,8 @@ from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search import starts
 from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
-from satsym.solvers.search.following import BESIDE, finer, followed, part
+from satsym.solvers.search.following import BESIDE, LOST, finer, followed, part
+from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.tried import Past, Tried
@@ -30,9 +31,9 @@ from satsym.solvers.search.tried import Past, Tried
 Answer = TypeVar("Answer")
 
 FAILING, ANY_DURATION, CONVEX, DOUBTFUL = 8, 12, 2, 3
-"""Number of failing starts that end the search as long as none has succeeded: FAILING, ANY_DURATION where the duration
-is free, and CONVEX where the problem is convex, because all starts lead to one motion then. After DOUBTFUL of them the
-search asks whether any motion reaches the end."""
+"""Number of failing starts that end the search as long as none has led to a motion that a mesh resolves: FAILING,
+ANY_DURATION where the duration is free, and CONVEX where the problem is convex, because all starts lead to one motion
+then. After DOUBTFUL of them the search asks whether any motion reaches the end."""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
@@ -77,21 +78,25 @@ def searched(
     """
     costs: list[float] = []
     patience = FAILING if instance.tf is not None else ANY_DURATION
-    failing, failed, endless, stable = CONVEX if convex(instance) else patience, 0, 0, 0
+    failing, failed, endless, stable, reached = CONVEX if convex(instance) else patience, 0, 0, 0, False
     for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
         if found.solved and at_edge(found):
             endless += 1
             if endless >= ENDLESS:
                 break
         elif found.solved and not any(same(found.objective, cost) for cost in costs):
-            one, last = part(limits), found.objective
-            for at in map(motion, finer(found, one)):
-                answer, last = exact(at, one), at.cost
+            one, last, lost = part(limits), found, False
+            for last in finer(found, one):
+                answer = exact(motion(last), one)
                 if answer is not None or limits.expired:
                     return answer
+                lost = refined(last)[1] > LOST
+                if lost and last is not found:
+                    break
             costs.append(found.objective)
-            stable += abs(last - found.objective) <= KEPT_COST * abs(found.objective)
-        failed = 0 if costs else failed + (not plan.loosened)
+            stable += abs(motion(last).cost - found.objective) <= KEPT_COST * abs(found.objective)
+            reached |= not lost
+        failed = 0 if reached else failed + (not plan.loosened)
         if stable >= MOST_COSTS or len(costs) >= 2 * MOST_COSTS or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():

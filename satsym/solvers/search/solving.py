@@ -77,9 +77,8 @@ def _exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 def exact_arcs(instance: Instance, limits: Limits) -> Exact | None:
     """The extremal of exact arcs of controls that switch to which the first start leads that leads to one."""
     within = replace(limits, work=WORK, meter=Meter())
-    return order.searched(
-        instance, within, partial(levels.arcs, instance), hopeless=partial(_hopeless, instance, limits)
-    )
+    hopeless = partial(_hopeless, instance, limits, [])
+    return order.searched(instance, within, partial(levels.arcs, instance), hopeless=hopeless)
 
 
 def course(instance: Instance, limits: Limits) -> Course | None:
@@ -88,14 +87,24 @@ def course(instance: Instance, limits: Limits) -> Course | None:
     return None if at is None else Course(at.times, np.concatenate([at.x, at.lam]))
 
 
-def _hopeless(instance: Instance, limits: Limits) -> bool:
-    """Whether no start will lead to an extremal, as is asked after a few that did not."""
-    return failing.why(instance, limits, early=True)[0] in CONCLUSIVE
+def _hopeless(instance: Instance, limits: Limits, reasons: list[failing.Reason]) -> bool:
+    """Return whether no start will lead to an extremal, as is asked after a few that did not, and add the reason."""
+    reason = failing.why(instance, limits, early=True)
+    if reason[0] in CONCLUSIVE:
+        reasons.append(reason)
+    return reason[0] in CONCLUSIVE
 
 
-def searched(instance: Instance, limits: Limits) -> Solution | None:
-    """What the search finds, without a final state that follows from the others."""
-    less, hopeless = redundant(instance), partial(_hopeless, instance, limits)
+def searched(instance: Instance, limits: Limits, reasons: list[failing.Reason] | None = None) -> Solution | None:
+    """Return what the search finds, without a final state that follows from the others.
+
+    Parameters
+    ----------
+    reasons
+        Receives the reason why no start will lead to an extremal, if there is one.
+    """
+    less = redundant(instance)
+    hopeless = partial(_hopeless, instance, limits, [] if reasons is None else reasons)
     if less is None:
         return order.searched(instance, limits, partial(exact, instance), hopeless=hopeless)
     found = order.searched(instance, limits, partial(_met, less), less.state, hopeless)
@@ -154,11 +163,12 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     began = time.perf_counter()
     limits, history = watched(instance, progress)
     limits = replace(limits, work=WORK)
-    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits)
+    reasons = list[failing.Reason]()
+    found = (levels.at_rest(instance, limits) if throttled else None) or searched(instance, limits, reasons)
     if found is not None:
         limits.tell(found.objective, history[-1].residual if history else math.nan)
         return replace(found, history=tuple(history), iterations=len(history), wall_s=time.perf_counter() - began)
-    status, message = failing.why(instance, limits)
+    status, message = reasons[0] if reasons else failing.why(instance, limits)
     nothing = unsolved(instance, automatic(instance.model.spec).name, 0.0)
     wall_s = time.perf_counter() - began
     return replace(nothing, status=status, message=message, history=tuple(history), wall_s=wall_s)
