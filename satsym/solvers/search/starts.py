@@ -29,8 +29,8 @@ WAVES = 3
 EQUAL_RATE = 1e-9
 """Relative difference of a rate and a state that are one but for rounding."""
 
-FREELY, DRAWS, BENT = 1.0, 40, (0.0, 0.3, 1.0, 3.0)
-"""Standard deviation of drawn ends, in sizes of their states, how many are drawn, and how far ways to them are bent."""
+FREELY, DRAWS, BENT = 1.0, 40, (0.0, 0.3, 1.0, 0.3)
+"""Standard deviation of drawn ends, in sizes of their states, how many are drawn, and how far paths to them bend."""
 
 MORE, WIDER, LASTING = 24, (0.3, 1.0, 3.0), (2.0, 4.0, 1.0)
 """Further starts where the first ones come to several costs or to nothing, how far they are bent, and how long they
@@ -126,8 +126,8 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         ]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
-    if draws_ends(instance):
-        found[1:1] = [Plan(coasting=True, drawn=k, noise=BENT[(k - 1) % 4], seed=k) for k in range(1, DRAWS + 1)]
+    if draws_ends(instance):  # every other path is a bent line, because coasts of several revolutions diverge
+        found[1:1] = [Plan(coasting=k % 2 > 0, drawn=k, noise=BENT[(k - 1) % 4], seed=k) for k in range(1, DRAWS + 1)]
     if round_:
         places = [place for pair in round_[:2] for place in pair]
         speed = 0.5 * (_turn_rate(start, round_) + _turn_rate(np.where(np.isnan(end), start, end), round_))
