@@ -1,9 +1,9 @@
-"""Proof of an optimum, by means other than the solver's own: anyone can recompute it from the initial costates.
+"""Proof that a solution is an optimum, independent of the solver: anyone can recompute it from the initial costates.
 
-The canonical equations are integrated again from the initial state and costates alone. What must hold is then
-measured: the right end, the distance from the solver's trajectory, stationarity, constancy of H, the
-Legendre-Clebsch condition, absence of conjugate times (Jacobi), and that no competitor of the kinds listed is
-cheaper.
+The canonical equations are integrated again from the initial state and costates alone. The certificate then measures:
+the boundary conditions at the final time, the distance from the solver's trajectory, stationarity, constancy of H, the
+Legendre-Clebsch condition, absence of conjugate times (Jacobi), and that no competitor (another motion of the same
+problem) of the kinds listed is cheaper.
 """
 
 from __future__ import annotations

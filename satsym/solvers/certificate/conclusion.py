@@ -1,4 +1,4 @@
-"""From checks to a certificate."""
+"""Construction of a certificate from the checks that were made."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from satsym.status import Verdict
 
 BOUNDARY, STATIONARITY, HAMILTONIAN = "boundary residual", "stationarity", "hamiltonian drift"
 OF_FLOW, OF_SEGMENTS, OF_NODES = "dynamics defect", "junction defect", "node defect"
-"""What checks are called. The last three are distances of the solution from the flow from the initial costates, of
-segments between nodes from the next node, and of the motion from each node from the next one."""
+"""Names of checks. The last three are distances of the solution from a flow: the flow from the initial costates, the
+flow from the beginning of each segment to the next one, and the flow from each node to the next one."""
 
 MISSING = float("nan")
 
@@ -25,20 +25,20 @@ def concluded(
     compared: bool = True,
     conjugate_time: float | None = None,
 ) -> Certificate:
-    """The certificate of an extremal.
+    """Return the certificate of an extremal.
 
     Parameters
     ----------
     first, second
-        Necessary conditions, and those which together with them are sufficient.
+        Checks of necessary conditions, and checks that together with these are sufficient.
     legendre
-        As :attr:`satsym.solution.Certificate.legendre_clebsch`.
+        Smallest eigenvalue of H_uu, see :attr:`satsym.solution.Certificate.legendre_clebsch`.
     others
-        What competitors came to.
+        Comparison with competitors, ``None`` if there was none.
     compared
-        Whether any were looked for.
+        Whether competitors were looked for.
     conjugate_time
-        The first one, if there is one.
+        First conjugate time, ``None`` if there is none.
     """
     others, measured = others or Comparison(), {check.name: check.value for check in first}
     second = [*second, *others.checks]
@@ -57,12 +57,12 @@ def concluded(
 
 
 def unmeasured(name: str, verdict: Verdict = Verdict.FAILED, not_checked: tuple[Kind, ...] = ()) -> Certificate:
-    """The certificate of a solution of which nothing could be measured.
+    """Return the certificate of a solution for which no condition could be measured.
 
     Parameters
     ----------
     name
-        Of the check that does not hold.
+        Name of the check that fails.
     """
     check = Check(name, 1.0, 0.0)
     return Certificate(verdict, MISSING, MISSING, MISSING, None, MISSING, None, (check,), not_checked=not_checked)

@@ -1,4 +1,4 @@
-"""Necessary conditions, and that of Legendre and Clebsch, measured along the flow."""
+"""Necessary conditions and the Legendre-Clebsch condition, measured along the canonical flow."""
 
 from __future__ import annotations
 
@@ -26,28 +26,31 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
-"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
+"""Largest admissible boundary residual, defect, violation of stationarity, change of H and error of the stated cost,
+all relative."""
 
 CANCELLED = 1e-5
-"""Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
+"""Fraction of the products of states and costates below which a cost counts as a difference of larger terms, or as
+rounding, and is compared with these products instead."""
 
 STRICT = 1e-12
-"""Share of its largest slope by a control with which H falls beyond a bound that holds it."""
+"""Minimum slope of H beyond an active control bound, relative to the largest slope with respect to this control, for
+which the control counts as strictly held at the bound."""
 
 
 def boundary_residual(solution: Solution, flow: Flow, more: float = 0.0) -> float:
-    """Largest residual at the right end of the flow, each relative to the size of what it compares.
+    """Return the largest residual of the final conditions along the flow, each relative to its typical magnitude.
 
-    A given state is compared with its own size or, where the control moves the end by less, with that, down to a
-    share of its size that rounding allows; a costate with its size and with that of the terms of the gradient
-    of the terminal cost, which may cancel almost: an error of the state then counts alike in both. A terminal
-    constraint is compared with what the states contribute to it, and H with its terms for costates of that size: at
-    the top of an ascent each of them vanishes.
+    A given final state is compared with its typical magnitude or, if the control moves the final state by less, with
+    that amount, but not with less than rounding allows. A costate is compared with its typical magnitude and with the
+    terms of the gradient of the terminal cost, which may nearly cancel: an error of the state then counts alike in
+    both. A terminal constraint is compared with the terms that the states contribute to it, and H with its terms for
+    costates of typical magnitude, since at the top of an ascent each term of H vanishes.
 
     Parameters
     ----------
     more
-        By how much H at the end exceeds that under the law.
+        Excess of H at the final time over its value under the control law.
     """
     instance, model = solution.instance, solution.instance.model
     n = len(instance.initial)
@@ -72,16 +75,17 @@ def boundary_residual(solution: Solution, flow: Flow, more: float = 0.0) -> floa
 
 
 def _moved(flow: Flow, state: Array, without: Array | None) -> float:
-    """How far the control moves the end, relative to the sizes of the states, at most one."""
+    """Return how far the control moves the final state, relative to the magnitudes of the states, at most 1."""
     if without is None:
         return 1.0
     return float(np.minimum((np.abs(flow.x[:, -1] - without) / state).max(), 1.0))
 
 
 def dynamics_defect(solution: Solution, flow: Flow) -> float:
-    """Largest distance of the solver's states and costates from the flow, relative to the size of each.
+    """Return the largest distance of the solver's states and costates from the flow, relative to their magnitudes.
 
-    Sizes as :func:`typical` has them. Compared at those nodes of the solver that are stations, and at the ends.
+    Magnitudes as returned by :func:`typical`. Only those nodes are compared that are stations of the flow, and both
+    ends.
     """
     here = np.clip(np.searchsorted(flow.times, solution.times), 1, len(flow.times) - 1)
     here -= solution.times - flow.times[here - 1] < flow.times[here] - solution.times
@@ -97,15 +101,18 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
 
 
 def off_cost(solution: Solution, flow: Flow) -> float:
-    """Difference of the stated cost from that along the flow, relative to it; what cancels counts as a share of H."""
+    """Return the relative difference of the stated cost from the cost along the flow.
+
+    A cost that is a small difference of large terms is compared with a fraction of these terms instead.
+    """
     size = max(abs(flow.cost), CANCELLED * products(solution), 1e-300)
     return float(abs(flow.cost - solution.objective) / size)
 
 
 def stationarity(solution: Solution) -> float:
-    """Largest difference of the control from the one that minimises H, relative to the largest control.
+    """Return the largest difference of the control from the minimiser of H, relative to the largest control.
 
-    Where nothing decides a direction every one minimises.
+    Where H does not determine the direction of a control, every direction counts as a minimiser.
     """
     instance = solution.instance
     law = instance.model.control_law_batch(
@@ -118,14 +125,15 @@ def stationarity(solution: Solution) -> float:
 
 
 def hamiltonian_drift(solution: Solution, flow: Flow, u: Array | None = None) -> float:
-    """Largest change of H along the flow, relative to the terms it consists of.
+    """Return the largest change of H along the flow, relative to the terms that it consists of.
 
-    Faint costates count as a share of their unit, as where they are compared: what is made of rounding keeps nothing.
+    Costates near zero count as a fraction of their unit, since a costate that consists of rounding does not keep H
+    constant.
 
     Parameters
     ----------
     u
-        The controls along it, if the law alone does not give them.
+        Controls along the flow, ``None`` if the control law determines them.
     """
     instance, model = solution.instance, solution.instance.model
     t, x, lam, p = flow.times, flow.x, flow.lam, instance.parameters
@@ -149,19 +157,19 @@ def first_order(
     constant: bool = True,
     more: float = 0.0,
 ) -> list[Check]:
-    """The first-order conditions along a flow; that H is constant comes last.
+    """Return checks of the first-order conditions along a flow; constancy of H comes last.
 
     Parameters
     ----------
-    defect
+    Name of the check that compares the solution with the flow.
         What the distance of the solution from the flow is called.
-    off_law
+    Violation of the minimum condition by the controls, ``None`` if it is their difference from the control law.
         By how much controls violate the minimum of H, if that is not their difference from the law.
-    u
+    Controls along the flow, ``None`` if the control law determines them.
         The controls along the flow, if the law alone does not give them.
-    constant
+    Whether to check that H is constant in a model without explicit time.
         Whether H is constant in a model without explicit time.
-    more
+    Excess of H at the final time, see :func:`boundary_residual`.
         As :func:`boundary_residual` has it.
     """
     checks = [
@@ -177,11 +185,11 @@ def first_order(
 
 
 def legendre_clebsch(solution: Solution) -> float:
-    """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds.
+    """Return the smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds.
 
-    Of a vector of full length on which H depends linearly it is that of H on the sphere: the length of its slope over
-    its own. It may vanish for an instant, such as at an end that leaves velocities free. A control that H holds at a
-    bound, falling beyond it, may be curved as it likes.
+    For a control vector of fixed magnitude on which H depends linearly, it is the eigenvalue of H on the sphere: the
+    magnitude of the gradient divided by that of the vector. It may vanish at isolated times, such as at a final time at
+    which velocities are free. Components that H holds strictly at a bound are left out.
     """
     instance, model = solution.instance, solution.instance.model
     along = solution.times, solution.x, solution.u, solution.lam, instance.parameters
@@ -205,14 +213,14 @@ def legendre_clebsch(solution: Solution) -> float:
 
 
 def node_by_node(solution: Solution, along: Segments) -> Flow | None:
-    """Where the canonical equations lead from the beginnings of segments to all nodes in these and the next.
+    """Integrate the canonical equations from the beginning of each segment to its nodes and to the next segment.
 
-    The flow from the initial costates alone is worth little where neighbouring extremals part quickly: it multiplies
-    the last digit of these beyond what may be missed. From node to node it is as good as ever. How far each segment
-    ends from the next node is one measure, by how much all nodes together would have to move for them to meet another
-    (:func:`correction`): many small gaps that lean to one side are no extremal.
+    The flow from the initial costates alone is unreliable where neighbouring extremals diverge quickly: it amplifies
+    rounding of the costates beyond the tolerance. From node to node it stays accurate. Two measures are used: the
+    distance of the end of each segment from the next node, and the amount by which all nodes together would have to
+    move for segments to meet (:func:`correction`), since many small gaps in one direction are no extremal.
 
-    To be compared with the solution; ``None`` where it is not finite.
+    Returns a flow to be compared with the solution, ``None`` if it is not finite.
     """
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
     times = solution.times
@@ -230,16 +238,16 @@ def node_by_node(solution: Solution, along: Segments) -> Flow | None:
 
 
 def correction(solution: Solution, along: Segments, reached: Flow) -> float:
-    """By how much nodes would have to move, to first order, for segments to meet and to end as they should.
+    """Return by how much nodes would have to move, to first order, for segments to meet and end conditions to hold.
 
-    Relative to the sizes of states and costates; infinite where nothing determines it.
+    The amount is relative to the magnitudes of states and costates; infinite if the linear system is singular.
 
     Parameters
     ----------
     solution, along
-        Whose nodes, and how segments follow them.
+        The solution, and its segments.
     reached
-        Where they end, as :func:`node_by_node` has it.
+        States and costates at the ends of segments, as returned by :func:`node_by_node`.
     """
     size, scale = len(along.scale), along.scale[:, None]
     gaps = (np.concatenate([reached.x, reached.lam]) - values(solution))[:, along.nodes] / scale
@@ -258,7 +266,11 @@ def correction(solution: Solution, along: Segments, reached: Flow) -> float:
 
 
 def _finish(solution: Solution, scale: Array) -> tuple[Array, Array, Array]:
-    """Residuals at the last node, and their derivatives by what is there, scaled, and by multipliers and final time."""
+    """Return scaled residuals at the last node and their derivatives.
+
+    The first derivatives are with respect to states and costates there, the second ones with respect to multipliers
+    and, if free, the final time.
+    """
     instance, (tf, x, lam) = solution.instance, final_values(solution)
     nu, residual = multipliers(instance, tf, x, lam)
     arguments = instance.parameters, instance.control_set.arguments, final_argument(instance)

@@ -1,9 +1,9 @@
-"""What the second variation owes to the end: a quadratic form in the end and the final time, and what ties these.
+"""Contribution of the end to the second variation: a quadratic form in final state and time, and linear constraints.
 
-To the second variation along the way, the end adds a form in the total variations dx and dt of the final state and
-time; constraints there, linearised, tie them (Bryson and Ho, Applied Optimal Control, 6.3 and 6.6). Both are the
-derivatives of the boundary residual, the costates taken along their own motion; multipliers of terminal constraints
-are in it, and with them the curvature of these.
+The end adds a form in the total variations dx and dt of the final state and time to the second variation; linearised
+constraints relate these variations (Bryson and Ho, Applied Optimal Control, 6.3 and 6.6). Both are derivatives of the
+boundary residual, with the costates varied along their own motion. The residual contains the multipliers of terminal
+constraints, and thus their curvature.
 """
 
 from __future__ import annotations
@@ -21,30 +21,31 @@ from satsym.solvers.collocation.scaling import final_argument
 
 @dataclass(frozen=True, eq=False)
 class EndForm:
-    """The form and the ties in the variations (delta x, delta t_f), the former at the final time as it was."""
+    """Quadratic form and linear constraints in the variations (delta x at the nominal final time, delta t_f)."""
 
     form: Array
-    """Shape (n + e, n + e), symmetric; e is 1 where the final time is free, else 0."""
+    """Matrix of the form, shape (n + e, n + e), symmetric; e is 1 if the final time is free, else 0."""
     ties: Array
-    """Rows that vanish, shape (c, n + e), each of about unit size: of fixed states, then of terminal constraints."""
+    """Rows of the linear constraints, shape (c, n + e), scaled to about 1: first fixed states, then terminal
+    constraints."""
     sizes: Array
-    """What these were divided by, shape (c,)."""
+    """Magnitudes by which these rows were divided, shape (c,)."""
 
 
 def final_values(solution: Solution) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
-    """Final time, states and costates, as kernels take them."""
+    """Return final time, states and costates in the form that kernels take."""
     return float(solution.times[-1]), tuple(solution.x[:, -1].tolist()), tuple(solution.lam[:, -1].tolist())
 
 
 def fixed_states(instance: Instance) -> NDArray[np.bool_]:
-    """Which states have their end given or on the reference, shape (n,)."""
+    """Return which final states are given or prescribed by the reference, shape (n,)."""
     return np.asarray(np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0))
 
 
 def multipliers(
     instance: Instance, tf: float, x: tuple[float, ...], lam: tuple[float, ...]
 ) -> tuple[tuple[float, ...], Array]:
-    """Multipliers of the terminal constraints that fit best, and the boundary residual with these."""
+    """Return the least-squares multipliers of the terminal constraints, and the boundary residual with them."""
     count, final = len(instance.model.spec.multipliers), final_argument(instance)
 
     def at(nu: tuple[float, ...]) -> Array:
@@ -63,7 +64,7 @@ def multipliers(
 
 
 def boundary_slopes(solution: Solution) -> tuple[float, Array, Array]:
-    """The final time, how the boundary residuals change at the end, and the canonical rates there.
+    """Return the final time, the Jacobian of the boundary residual, and the canonical rates at the final time.
 
     Returns
     -------
@@ -79,15 +80,15 @@ def boundary_slopes(solution: Solution) -> tuple[float, Array, Array]:
 
 
 def end_form(solution: Solution, scale: Array) -> EndForm:
-    """The form at the end of a solution.
+    """Return the quadratic form and the constraints at the end of a solution.
 
     Parameters
     ----------
     solution
-        Whose.
+        Solution whose final values are used.
     scale
-        Units of states and costates, shape (2n,), whose products are all the same; a variation of the final time has
-        the duration as its unit, the form the product of the units of a state and its costate.
+        Units of states and costates, shape (2n,); the product of the units of each state and its costate is the same.
+        The unit of a variation of the final time is the duration, the unit of the form is that product.
     """
     instance, n = solution.instance, len(solution.x)
     tf, slopes, rates = boundary_slopes(solution)

@@ -1,9 +1,10 @@
-"""Limits of the end, of ranges of final states and of inequalities: how far it is beyond, and how hard they press.
+"""Limits of final states and terminal inequalities: whether they are violated, and the signs of their multipliers.
 
-Where a limit of a range is met the final state is given, and what transversality lacks there, lambda - S_x - nu' psi_x,
-is its multiplier mu: the cost changes by -mu dx, so that at an upper limit it must not be negative, nor positive at a
-lower one. An inequality psi <= 0 that is met has its nu, which must not be negative (Karush, Kuhn and Tucker). Where
-none vanishes, a change away from the limits costs more to first order; the rest is the problem with these limits met.
+If a limit of a range is active, the final state is given there, and the residual of transversality, lambda - S_x - nu'
+psi_x, is its multiplier mu: the cost changes by -mu dx, so that mu must not be negative at an upper limit nor positive
+at a lower one. The multiplier nu of an active inequality psi <= 0 must not be negative (Karush, Kuhn and Tucker). If no
+multiplier vanishes, a variation away from the limits increases the cost to first order; what remains is the problem
+with these limits as equalities.
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ from satsym.solvers.search.reading.limits import BEYOND_LIMIT, beyond
 from satsym.status import Verdict
 
 SIGN, STRICT = 1e-9, 1e-7
-"""Largest multiplier of the wrong sign that is none, and least one that does not vanish, relative to the costate."""
+"""Largest multiplier of the wrong sign that counts as zero, and smallest multiplier that counts as strictly nonzero,
+both relative to the costates."""
 
 
 def pushes(solution: Solution) -> dict[str, float]:
-    """Multipliers of the limits that are met, relative to the costates, positive where they hold the end."""
+    """Return multipliers of the active limits relative to the costates; positive if a limit keeps the end back."""
     instance, spec = solution.instance, solution.instance.model.spec
     if not instance.met:
         return {}
@@ -59,7 +61,10 @@ def pushes(solution: Solution) -> dict[str, float]:
 
 
 def others_asked(solution: Solution) -> dict[str, Side] | None:
-    """Other limits that a solution asks for: one that it is beyond, or none that pulls; ``None`` where its own do."""
+    """Return other active limits that a solution requires, or ``None`` if its own are right.
+
+    Either a violated limit is added, or the limit with the most negative multiplier is removed.
+    """
     met = dict(solution.instance.met)
     over = beyond(solution.instance, solution.times, solution.x)
     if max(over.values(), default=0.0) > BEYOND_LIMIT:
@@ -72,7 +77,7 @@ def others_asked(solution: Solution) -> dict[str, Side] | None:
 
 
 def _after_jump(solution: Solution) -> Solution:
-    """The solution with costates at the end after the jump that a path constraint makes there."""
+    """Return the solution with its costates at the final time after the jump that a path constraint causes."""
     if solution.method != BOUNDARY_ARCS:
         return solution
     from satsym.solvers.certificate.constrained.replay import replay
@@ -84,7 +89,7 @@ def _after_jump(solution: Solution) -> Solution:
 
 
 def _held_back(solution: Solution) -> float:
-    """H at the end less that under the law, which boundary residuals have: where a constraint holds a control."""
+    """Return H at the final time less H under the control law; nonzero if a path constraint sets a control."""
     if solution.method != BOUNDARY_ARCS:
         return 0.0
     from satsym.solvers.certificate.constrained.conditions import more_at_end
@@ -95,7 +100,7 @@ def _held_back(solution: Solution) -> float:
 
 
 def with_limits(certificate: Certificate, solution: Solution) -> Certificate:
-    """The certificate of a solution with the limits given that are met, and what must hold besides."""
+    """Return a certificate extended by the conditions on active limits of the end, with the verdict that follows."""
     if not solution.instance.end_limits:
         return certificate
     pressing = min(pushes(solution).values(), default=np.inf)

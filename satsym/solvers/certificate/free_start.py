@@ -1,11 +1,11 @@
-"""How the minimum cost is curved in free initial states, as the field of neighbouring extremals tells.
+"""Second derivatives of the minimum cost with respect to free initial states, from the field of neighbouring extremals.
 
-Neighbouring extremals that keep what is asked of the end span, in states and costates at the start, a Lagrangian plane
-(X, Lambda). The costate at the start is the slope of the minimum cost V there, so that Lambda = V_xx X: among those
-that keep the given initial states, X' Lambda is the second derivative of V in the free ones. Where the extremal is a
-strict minimum with its start given and this form is positive, it is a strict minimum with its start free (the whole
-second variation, minimised over the motion first). The plane is carried from the end backwards, so that nothing is
-lost where motions part quickly.
+Neighbouring extremals that satisfy the final conditions span, in states and costates at the initial time, a Lagrangian
+plane (X, Lambda). The initial costate is the gradient of the minimum cost V, so that Lambda = V_xx X: among the
+extremals that keep the given initial states, X' Lambda is the second derivative of V with respect to the free ones. If
+the extremal is a strict minimum for a given initial state and this form is positive, it is a strict minimum for a free
+initial state. The plane is propagated backwards from the final time, so that no accuracy is lost where motions diverge
+quickly.
 """
 
 from __future__ import annotations
@@ -23,24 +23,25 @@ from satsym.solvers.certificate.reintegration.segments import segments
 from satsym.solvers.certificate.start import STILL, UNRESOLVED, Curvature, softest
 
 SWITCHED = "bang-bang"
-"""The method of extremals between whose arcs controls switch, of which the field knows nothing."""
+"""Method of extremals with switching controls, for which the field of neighbouring extremals is not available."""
 
 DISTINCT = 1e-9
-"""Least singular value, relative, of the states in a plane of extremals that can be told from their start."""
+"""Minimum singular value, relative, of the states in a plane of extremals. Below it, extremals cannot be distinguished
+by their initial states, and the derivatives count as not resolved."""
 
 
 def tells(instance: Instance) -> bool:
-    """Whether neighbouring extremals can tell of all that is free besides the end, whatever the answer is."""
+    """Return whether only initial states are free and the model is smooth, so that neighbouring extremals suffice."""
     spec = instance.model.spec
     in_arcs = spec.switching or spec.throttled or spec.in_arcs
     return not in_arcs and all(unknown.place is Place.INITIAL for unknown in instance.free)
 
 
 def curvature(solution: Solution) -> Curvature:
-    """The curvature of the minimum cost in what is free at the start.
+    """Return the curvature of the minimum cost in the free initial states.
 
-    It is not resolved where more is free than initial states, where the extremal consists of arcs, or where numbers
-    fail.
+    It is not resolved if other quantities than initial states are free, if the extremal consists of arcs, or if the
+    computation fails numerically.
     """
     form = second_derivative(solution)
     if form is None:
@@ -51,7 +52,7 @@ def curvature(solution: Solution) -> Curvature:
 
 
 def second_derivative(solution: Solution) -> Array | None:
-    """The second derivatives of the minimum cost by free initial states.
+    """Return the second derivatives of the minimum cost with respect to free initial states.
 
     Returns
     -------
@@ -89,7 +90,10 @@ def second_derivative(solution: Solution) -> Array | None:
 
 
 def _ended(solution: Solution, scale: Array) -> Array | None:
-    """The plane at the end of neighbouring extremals that keep what is asked there, shape (2n, n), orthonormal."""
+    """Return an orthonormal basis, shape (2n, n), of neighbouring extremals that satisfy the final conditions.
+
+    The basis is taken at the final time; ``None`` if the plane is not resolved.
+    """
     instance, n = solution.instance, len(solution.x)
     tf, slopes, rates = boundary_slopes(solution)
     by_time = slopes[:, : 2 * n] @ rates + slopes[:, -1]
@@ -108,7 +112,7 @@ def _ended(solution: Solution, scale: Array) -> Array | None:
 
 
 def _inverse(symplectic: Array) -> Array:
-    """The inverse of a symplectic matrix."""
+    """Return the inverse of a symplectic matrix."""
     n = len(symplectic) // 2
     a, b, c, d = symplectic[:n, :n], symplectic[:n, n:], symplectic[n:, :n], symplectic[n:, n:]
     return np.block([[d.T, -b.T], [-c.T, a.T]])

@@ -1,12 +1,12 @@
-"""Jacobi's condition: conjugate times, each as often as neighbouring extremals meet there, and the free end.
+"""Jacobi's condition: conjugate times with their multiplicities, and the second-order condition at the free end.
 
-Neighbouring extremals from the same initial state span, in states X and costates Lambda, a Lagrangian plane. In
-W = -(X + i Lambda)(X - i Lambda)^-1, which is unitary and symmetric, the plane is seen whatever its basis: X is
-singular where an eigenvalue is one, as often as it occurs. Under Legendre's condition eigenphases go through zero
-upwards only, so that as many conjugate times have passed as phases have gone through a full turn (Arnold, On a
+Neighbouring extremals from the same initial state span, in states X and costates Lambda, a Lagrangian plane. The matrix
+W = -(X + i Lambda)(X - i Lambda)^-1, unitary and symmetric, does not depend on the basis of the plane: X is singular if
+an eigenvalue of W is one, with the same multiplicity. Under Legendre's condition eigenphases cross zero in the positive
+direction only, so that the number of conjugate times equals the number of full turns of all phases (Arnold, On a
 characteristic class entering into conditions of quantization, 1967; Agrachev and Sachkov, Control Theory from the
-Geometric Viewpoint, 21). All phases leave zero at the start; those of directions out of the control's reach, or not
-reached yet, stay there. Two phases that pass together are seen as well as one, which a determinant's sign is blind to.
+Geometric Viewpoint, 21). All phases start from zero; phases of uncontrollable directions stay there. Unlike the sign of
+a determinant, phases also show two crossings at the same time.
 """
 
 from __future__ import annotations
@@ -26,25 +26,28 @@ from satsym.solvers.certificate.reintegration.segments import Segments, between
 TURN = 2.0 * np.pi
 
 TOUCHED = 1e-7
-"""Phases this close to a full turn have made it, as far as can be told."""
+"""Distance of a phase from a full turn, in rad, below which it cannot be told whether the phase has completed the
+turn."""
 
 HALF, FULL = 0.5, 1.0 - 1e-9
-"""How much of a turn the sum of all phases may have moved onwards; by rounding, phases at rest move back."""
+"""Largest forward change of the sum of all phases in a step, as a fraction of a turn: without and with a jump of the
+control. The remainder to a full turn is left for rounding, which can move phases at rest backwards."""
 
 AFRESH = 8
-"""Steps after which the basis is made orthonormal: within so many it does not become a bad one."""
+"""Number of steps after which the basis is orthonormalised; the basis stays well-conditioned for this many steps."""
 
 INDEPENDENT = 1e-9
-"""Least singular value, relative, of ties at the end that are different ones."""
+"""Minimum singular value, relative, of linearly independent constraints at the end. Smaller values count as zero."""
 
 MIXTURES = (0.4, 1.0, 2.1)
-"""Angles at which real and imaginary parts are mixed."""
+"""Angles, in rad, at which real and imaginary parts of a matrix are combined before their eigenvectors are computed."""
 
 OFF_DIAGONAL = 1e-10
-"""Beside the diagonal where the eigenvectors of a mixture are those of both parts: phases are off by its square."""
+"""Largest off-diagonal element for which the eigenvectors of a combination serve for both parts; the error of the
+phases is its square. Above it, phases are computed by the general eigenvalue routine."""
 
 PARTS, ROUNDS = 16, 6
-"""Into how many a step is taken apart in which a conjugate time is looked for, and how often."""
+"""Number of parts into which a step with a conjugate time is divided, and number of such divisions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,24 +55,24 @@ class Phases:
     """Eigenphases of the field of neighbouring extremals."""
 
     values: Array
-    """Followed continuously from zero, in ascending order, shape (K, n)."""
+    """Phases in rad, continuous along the motion from zero, in ascending order, shape (K, n)."""
     frames: Array
-    """Orthonormal bases of the planes, shape (K, 2n, n)."""
+    """Orthonormal bases of the Lagrangian planes, shape (K, 2n, n)."""
 
     @property
     def passed(self) -> NDArray[np.intp]:
-        """Conjugate times passed so far, with their multiplicity, station by station, shape (K,)."""
+        """Return the number of conjugate times up to each station, with their multiplicities, shape (K,)."""
         return _passed(self.values)
 
     @property
     def touching(self) -> bool:
-        """Whether a phase ends so close to a full turn that no-one can tell whether it has made it."""
+        """Return whether a final phase is so close to a full turn that it cannot be told whether it is complete."""
         turns = np.round(self.values[-1] / TURN)
         return bool(((turns >= 1.0) & (np.abs(self.values[-1] - turns * TURN) <= TOUCHED)).any())
 
 
 def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
-    """Phases from station to station.
+    """Return the phases at all stations.
 
     Parameters
     ----------
@@ -77,13 +80,14 @@ def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
         Symplectic matrices from each station to the next, shape (K-1, 2n, 2n), in each of which the sum of the phases
         turns by less than pi.
     jumped
-        Those in which the control jumps. The least H of all controls has a concave edge there, so that no phase turns
-        back, and as it has slopes across one direction only, together they turn by less than a full turn.
+        Indices of the steps in which the control jumps. The minimum of H over all controls has a concave edge there, so
+        that no phase decreases; since its slopes differ in one direction only, the sum of phases grows by less than a
+        turn.
 
     Returns
     -------
     Phases
-        ``None`` where numbers fail.
+        Continuous phases; ``None`` if the computation fails numerically.
     """
     n, frames = transition.shape[1] // 2, _frames(transition)
     if not np.isfinite(frames).all():
@@ -96,7 +100,7 @@ def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
 
 
 def _frames(transition: Array) -> Array:
-    """Bases of the plane at all stations, shape (K, 2n, n), not orthonormal, but not bad ones either."""
+    """Return bases of the plane at all stations, shape (K, 2n, n), well-conditioned but not orthonormal."""
     count, size = len(transition), transition.shape[1]
     padded = np.broadcast_to(np.eye(size), (-(-count // AFRESH), AFRESH, size, size)).copy()
     padded.reshape(-1, size, size)[:count] = transition
@@ -111,14 +115,14 @@ def _frames(transition: Array) -> Array:
 
 
 def _orthonormal(frame: Array) -> Array:
-    """A basis of the same plane, by the routines that :func:`numpy.linalg.qr` calls, at a quarter of its time."""
+    """Return an orthonormal basis of the same plane, by the LAPACK routines of :func:`numpy.linalg.qr`."""
     reflectors, factors, _, _ = lapack().dgeqrf(frame)
     found: Array = lapack().dorgqr(reflectors, factors, overwrite_a=True)[0]
     return found
 
 
 def _angles(frames: Array) -> Array:
-    """Eigenphases modulo a turn, in ascending order, shape (M, n), of orthonormal bases."""
+    """Return eigenphases modulo a turn, in ascending order, shape (M, n), from orthonormal bases."""
     n = frames.shape[2]
     upper, lower = frames[:, :n], frames[:, n:]
     across = upper @ lower.transpose(0, 2, 1)
@@ -139,16 +143,19 @@ def _angles(frames: Array) -> Array:
 
 
 def _turned(before: Array, after: Array, onwards: Array | float = HALF) -> Array:
-    """How many phases have come past a full turn while their sum went on, from one to another modulo a turn, (M,).
+    """Return the number of phases that complete a turn while the sum of phases modulo a turn changes as given, (M,).
 
-    It moves by less than a turn, of which so much is onwards.
+    The sum changes by less than a turn, of which at most the fraction ``onwards`` is in the positive direction.
     """
     found: Array = np.ceil((before - after) / TURN - (1.0 - onwards))
     return found
 
 
 def _ordered(angles: Array, passed: Array) -> Array:
-    """Phases in ascending order, shape (M, n): so many of the smallest angles, going round, are turns further, (M,)."""
+    """Return phases in ascending order, shape (M, n), with full turns added for the phases that have completed them.
+
+    ``passed``, shape (M,), is the total number of completed turns; the smallest angles have the most turns.
+    """
     n = angles.shape[1]
     places = passed[:, None].astype(np.intp) + np.arange(n)
     found: Array = np.take_along_axis(angles, places % n, axis=1) + TURN * (places // n)
@@ -156,13 +163,13 @@ def _ordered(angles: Array, passed: Array) -> Array:
 
 
 def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], Array]) -> float | None:
-    """The first conjugate time, or ``None``.
+    """Return the first conjugate time, or ``None`` if there is none.
 
     Parameters
     ----------
-    times
+    Times of the stations, shape (K,).
         Of the stations, shape (K,).
-    between
+    Function that returns transition matrices from a station to given times before the next one, shape (M, 2n, 2n).
         Transitions from a station to given times until the next, shape (M, 2n, 2n).
     """
     after = np.flatnonzero(phases.passed > 0)
@@ -181,25 +188,25 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
 
 
 def _passed(values: Array) -> NDArray[np.intp]:
-    """Full turns that phases have made, together, shape (K,)."""
+    """Return the total number of full turns of all phases, shape (K,)."""
     found: NDArray[np.intp] = np.maximum(np.floor(values / TURN), 0.0).sum(axis=1).astype(np.intp)
     return found
 
 
 def second_order_at_end(frame: Array, end: EndForm) -> float:
-    """The smallest curvature of the cost along the free directions of the final state; infinite if it is fixed.
+    """Return the smallest curvature of the cost along the free directions of the final state; infinite if it is fixed.
 
     The curvatures are those of the quadratic form whose diagonal is scaled to 1. Along an eigenvector of the unitary
-    matrix of ``frame``, of which the phase is the argument of the eigenvalue, the cost of arriving there has the
-    curvature cot(phase / 2), as long as no conjugate time has passed. Directions that are hardly reached have their
-    unit from this cost.
+    matrix of ``frame``, whose phase is the argument of the eigenvalue, the cost of reaching a final state has the
+    curvature cot(phase / 2), as long as no conjugate time has passed. This cost also sets the unit of directions that
+    are hardly controllable.
 
     Parameters
     ----------
     frame
         Basis of the plane of neighbouring extremals at the end, shape (2n, n), orthonormal.
     end
-        What the end adds, in the same units.
+        Quadratic form and constraints of the end, in the same units.
     """
     n = frame.shape[1]
     phases, axes = _eigen(frame)
@@ -221,7 +228,7 @@ def second_order_at_end(frame: Array, end: EndForm) -> float:
 
 
 def _eigen(frame: Array) -> tuple[Array, Array]:
-    """Eigenphases in [0, 2 pi), but for rounding below zero, and real orthonormal eigenvectors."""
+    """Return eigenphases in [0, 2 pi), up to rounding, and real orthonormal eigenvectors."""
     n = frame.shape[1]
     upper, lower = frame[:n], frame[n:]
     plane = -np.linalg.solve((upper - 1j * lower).T, (upper + 1j * lower).T).T
@@ -235,12 +242,12 @@ def _eigen(frame: Array) -> tuple[Array, Array]:
 
 
 def kernel(ties: Array) -> Array:
-    """Orthonormal directions that ties leave free, shape (k, f).
+    """Return an orthonormal basis of the directions that satisfy linear constraints, shape (k, f).
 
     Parameters
     ----------
     ties
-        Rows, shape (c, k).
+        Rows of the constraints, shape (c, k).
     """
     if not ties.size:
         return np.eye(ties.shape[1])
@@ -251,29 +258,29 @@ def kernel(ties: Array) -> Array:
 
 
 FLAT = 1e-9
-"""Relative curvature in the free end below which nobody can tell whether there is any."""
+"""Relative curvature in the free end below which its sign cannot be determined."""
 
 NOT_STRICT = "not strict: other controls have the same cost"
 
 
 @dataclass(frozen=True)
 class Conjugate:
-    """What neighbouring extremals from the same initial state say."""
+    """Result of the field of neighbouring extremals from the same initial state."""
 
     resolved: bool
-    """Whether they could be followed."""
+    """Whether the field could be computed."""
     passed: int = 0
-    """Conjugate times after the start, with their multiplicity."""
+    """Number of conjugate times after the initial time, with their multiplicities."""
     time: float | None = None
-    """The first of these, or ``None``."""
+    """First conjugate time, ``None`` if there is none."""
     touching: bool = False
-    """Whether the final time may be one, as far as can be told."""
+    """Whether the final time may be conjugate within the accuracy of the phases."""
     curvature: float = float("inf")
-    """Least one of the cost in what is free at the end, relative; infinite where nothing is."""
+    """Minimum relative curvature of the cost in the free final states; infinite if no final state is free."""
 
     @property
     def checks(self) -> list[Check]:
-        """Each is a deficit that must not be positive."""
+        """Return checks of Jacobi's condition, each of a deficit that must not be positive."""
         if not self.resolved:
             return [Check("conjugate points not resolved", 1.0, 0.0)]
         found = [Check("conjugate points: none", float(self.passed), 0.0)]
@@ -285,12 +292,12 @@ class Conjugate:
 
 
 def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
-    """Count conjugate times, and measure the curvature in the free end.
+    """Count conjugate times and measure the curvature of the cost in the free final states.
 
     Parameters
     ----------
     along
-        Its linearisation, or ``None`` where there is none.
+        Linearisation of the canonical equations along the solution, ``None`` if it could not be computed.
     """
     phases = None if along is None else followed(along.transition, along.jumped)
     if along is None or phases is None:

@@ -1,8 +1,9 @@
-"""Whether the kernels contradict each other where a solution lies; what they say of it would prove nothing then.
+"""Check that the kernels agree with each other near a solution; otherwise the certificate would prove nothing.
 
-The nodes are taken a little aside of themselves, so that no number is zero by chance: once with the instance's own
-bounds, and twice with others near the control, once with the costates turned round, so that every bound is met. The
-companion of a switching problem is smoothed.
+Kernels are the generated functions of a model. They are evaluated close to nodes of the solution, but not at them, so
+that no number is zero by chance: once with the instance's own bounds and twice with bounds near the control, once of
+these with reversed costates, so that every bound is reached. The regularised problem of a switching problem is used
+with smoothing.
 """
 
 from __future__ import annotations
@@ -20,20 +21,20 @@ from satsym.solvers.control.slopes import slope
 from satsym.status import Verdict
 
 NODES = 4
-"""At how many nodes kernels are looked at, once with its own and twice with narrow bounds."""
+"""Number of nodes near which kernels are evaluated; each is used three times, with different bounds."""
 
 ASIDE_OF_NODES = 1e-3
-"""How far aside of the nodes, relative to the largest value of each component."""
+"""Distance of the evaluated points from the nodes, relative to the largest value of each component."""
 
 FAINT_COMPONENT = 1e-20
-"""Share of the largest component below which another is none but rounding."""
+"""Magnitude of a component, relative to the largest one, below which it counts as rounding."""
 
 WIDE, NARROW = 1e3, 0.5
-"""Bounds where there are none, and narrow ones, relative to the largest control."""
+"""Bounds, relative to the largest control, in place of absent ones; and narrow bounds."""
 
 
 def with_kernels_examined(certificate: Certificate, solution: Solution) -> Certificate:
-    """The certificate with a check more, which none passes whose kernels contradict each other."""
+    """Return a certificate with an additional check that fails if the kernels contradict each other."""
     worst = consistency.worst(solution.instance.model, _places(solution))
     deviation = float("inf") if worst is None else worst.deviation
     check = Check("kernels contradict each other", deviation, consistency.LIMIT)
@@ -42,7 +43,7 @@ def with_kernels_examined(certificate: Certificate, solution: Solution) -> Certi
 
 
 def _places(solution: Solution) -> dict[str, Any]:
-    """Arguments of all kernels near nodes of a solution."""
+    """Return arguments of all kernels near nodes of a solution."""
     instance, spec = solution.instance, solution.instance.model.spec
     rng = np.random.default_rng(consistency.SEED)
     chosen = np.tile(np.linspace(0, len(solution.times) - 1, NODES).astype(int), 3)
@@ -67,9 +68,9 @@ def _places(solution: Solution) -> dict[str, Any]:
 
 
 def _control_sizes(solution: Solution) -> Array:
-    """The largest magnitude of each control, shape (m, 1); of a vector that of its largest component.
+    """Return the largest magnitude of each control, shape (m, 1); for a vector that of its largest component.
 
-    Where a component is next to nothing beside the others, second derivatives of a norm keep few of its digits.
+    If a component is negligible beside the others, second derivatives of a norm lose most of their digits.
     """
     size, instance = np.abs(solution.u).max(axis=-1, keepdims=True), solution.instance
     for places, part in instance.control_set.parts if instance.model.spec.control_parts else ():
@@ -79,7 +80,7 @@ def _control_sizes(solution: Solution) -> Array:
 
 
 def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
-    """The instance's own for the first places, narrow ones for the others."""
+    """Return the instance's own bounds for the first nodes and narrow bounds for the others."""
     model, u = instance.model, at["u"]
     kind = model.spec.control_set
     if model.spec.control_parts:
@@ -103,7 +104,7 @@ def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
 
 
 def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
-    """Bounds where the control set is a product of sets; what regularises is as large as slopes of H are."""
+    """Return bounds for a product of control sets; the regularisation has the magnitude of the slopes of H."""
     u, spec, found = at["u"], instance.model.spec, list[Array]()
     owned = np.arange(u.shape[-1]) < NODES
     for places, part in instance.control_set.parts:

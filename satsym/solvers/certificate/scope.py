@@ -1,4 +1,4 @@
-"""How far the claim of a certificate reaches, and the theorem that carries it."""
+"""Whether the claim of a certificate is local or global, and the theorem that supports it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SOONEST = (
     "the motion is linear, the cost is time alone and the final state can be maintained, so the reachable set "
     "grows with time and an extremal leads to its boundary (Lee and Markus 1967, chapter 2)"
 )
-"""Why no admissible motion at all costs less."""
+"""Reasons why no admissible motion has a lower cost."""
 
 THEOREMS = {
     "no proof of a minimum along singular arcs: the problem is not convex": (
@@ -43,18 +43,18 @@ THEOREMS = {
     "switching function vanishes on an arc": "signs of the switching functions in a problem that is convex around the "
     "extremal (Mangasarian 1966)",
 }
-"""A sufficient condition that a certificate has measured -> the theorem by which it shows a local minimum; the first
-that a certificate has is meant."""
+"""Sufficient condition measured by a certificate -> theorem by which it proves a local minimum. The first entry that
+matches a check of the certificate applies."""
 
 INSIDE, MET = 1e-6, 1e-9
-"""Share of its range by which a control that holds the end is inside its bounds, and relative size of the rates of the
-states there that are none."""
+"""Minimum distance from its bounds, as a fraction of its range, of a control that maintains the final state; and the
+largest rate of the states under this control, relative, that counts as zero."""
 
 
 def with_scope(certificate: Certificate, solution: Solution) -> Certificate:
-    """Say whether the claim of a certificate is local or global, and what carries it.
+    """Return a certificate that states whether its claim is local or global, and what supports the claim.
 
-    Where a condition does not hold, or something cheaper was found, nothing is claimed: that condition is named.
+    If a condition fails or a competitor is cheaper, nothing is claimed and the first failed check is named.
     """
     certificate = replace(certificate, scope=Scope.LOCAL, because=_first_failed(certificate))
     if certificate.verdict in (Verdict.FAILED, Verdict.EXTREMAL_ONLY):
@@ -70,7 +70,7 @@ def _first_failed(certificate: Certificate) -> str:
 
 
 def _no_other(solution: Solution) -> str:
-    """Why no admissible motion costs less than an extremal; empty where that is not known."""
+    """Return the reason why no admissible motion costs less than an extremal; empty if none is known."""
     instance = solution.instance
     if instance.free or instance.end_limits or instance.solver.free_angles or solution.interval is not None:
         return ""
@@ -86,7 +86,7 @@ def _no_other(solution: Solution) -> str:
 
 
 def _priced(instance: Instance) -> bool:
-    """Whether a linear motion costs what is linear and convex in its controls, in a given time to a given state."""
+    """Return whether the motion is linear, its cost convex in the controls, and final time and state are given."""
     if instance.tf is None or instance.solver.free_angles or "reference" in instance.final.values():
         return False
     motion = linear_motion(instance)
@@ -94,11 +94,12 @@ def _priced(instance: Instance) -> bool:
 
 
 def _soonest(instance: Instance) -> bool:
-    """Whether an extremal of least time is the quickest motion.
+    """Return whether an extremal of a minimum-time problem is a global minimum.
 
-    Let K(t) be what a linear motion x' = A x + B u + c with controls in a box reaches in the time t. Where controls
-    inside the box hold the end and (A, B) is controllable, the end is inside K(t) at all times after it has first been
-    reached. An extremal whose costates do not vanish ends on the boundary of K(t), so it is the first to arrive.
+    Let K(t) be the set of states that a linear motion x' = A x + B u + c with controls in a box reaches at the time t.
+    If controls inside the box maintain the final state and (A, B) is controllable, the final state is inside K(t) at
+    all times after it was first reached. An extremal whose costates do not vanish ends on the boundary of K(t), so it
+    is the first to arrive.
     """
     names = instance.model.spec.state_names
     if instance.tf is not None or not all(isinstance(instance.final.get(name), float) for name in names):
@@ -121,7 +122,7 @@ def _soonest(instance: Instance) -> bool:
 
 
 def _controllable(a: Array, b: Array) -> bool:
-    """Whether the controllability matrix has full rank, with rows and powers of comparable size."""
+    """Return whether the controllability matrix has full rank, with rows and powers scaled to comparable magnitude."""
     size = float(np.abs(a).max()) or 1.0
     blocks = [b]
     for _ in range(len(a) - 1):

@@ -1,14 +1,15 @@
-"""The second variation as a matrix: in the lengths of arcs, and in what continuous controls change on short pieces.
+"""The second variation as a matrix, with respect to arc lengths and piecewise constant variations of the controls.
 
-Stretched to a fixed length each arc is a smooth problem with a parameter, so that nothing jumps: to the integral of the
-accessory problem (Bryson and Ho, Applied Optimal Control, 6.3) a change of the length adds its share of the rates, and
-of H_x. Where arcs are saturated their lengths are all there is; on a boundary the control follows the state, and keeps
-to it where the state is on it at the entry. Where this form is positive on what keeps the end and the entries, an
-extremal that switches strictly, with Legendre's condition strict on its arcs and strictly pressed against its
-boundaries, is a strict strong local minimum (Osmolovskii and Maurer, Applications to Regular and Bang-Bang Control,
-2012, chapters 6 and 7; with boundaries Maurer and Vossen, Sufficient conditions and sensitivity analysis for optimal
-bang-bang control problems with state constraints, System Modeling and Optimization, 2009). Of a smooth extremal, which
-is one arc, it has a negative eigenvalue where the second variation has one; it knows nothing of conjugate times.
+Scaled to a fixed length, each arc is a smooth problem with its length as a parameter, so that nothing jumps: a change
+of the length adds its part of the rates and of H_x to the integral of the accessory problem (Bryson and Ho, Applied
+Optimal Control, 6.3). For saturated arcs the lengths are the only variations; on a boundary the control follows from
+the state, and the state stays on it if it is on it at the entry. If this form is positive on the variations that keep
+the end conditions and the entries, an extremal with strict switching, strict Legendre condition on its arcs and
+strictly positive boundary multipliers is a strict strong local minimum (Osmolovskii and Maurer, Applications to Regular
+and Bang-Bang Control, 2012, chapters 6 and 7; with boundaries Maurer and Vossen, Sufficient conditions and sensitivity
+analysis for optimal bang-bang control problems with state constraints, System Modeling and Optimization, 2009). For a
+smooth extremal, which is a single arc, the form has a negative eigenvalue if the second variation has one; it does not
+show conjugate times.
 """
 
 from __future__ import annotations
@@ -26,19 +27,19 @@ from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.collocation.scaling import final_argument
 
 DROWNED = 1e-8
-"""Share of the weight of a control's change that rounding of the form may come to."""
+"""Rounding error of the form, relative to the cost of a control variation, above which the form is unreliable."""
 
 ALONG = 1.0 - 1e-6
-"""Least cosine between directions that are the same."""
+"""Minimum cosine of the angle between two directions that count as the same."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """The accessory problem at the ends and in the middle of each step of an arc, shapes (2 K + 1, ...), in units.
+    """The accessory problem at the ends and midpoints of the steps of an arc, shapes (2 K + 1, ...), in scaled units.
 
-    States x have the time as their last one. Changes follow x' = motion x + push w + f / T dT and cost
-    (x' restoring x + w'w) / 2 + H_x x / T dT; those of the continuous controls, w, are constant on each piece. An arc
-    of no length has a single place and no pieces.
+    Time is the last component of the states x. Variations satisfy x' = motion x + push w + f / T dT with the cost (x'
+    restoring x + w'w) / 2 + H_x x / T dT. Here w are the variations of the continuous controls, constant on each piece,
+    and T is the length of the arc. An arc of no length has a single point and no pieces.
     """
 
     lasting: float
@@ -49,9 +50,10 @@ class Arc:
     rates: Array
     slope: Array
     met: Mapping[int, Met] = field(default_factory=dict)
-    """What is met where steps begin, by their numbers, and at the end."""
+    """Conditions and forms at the beginnings of steps, by the index of the step, and at the end of the arc."""
     basis: Array | None = None
-    """In what changes w are combined on each piece, shape (pieces, n, r); all of the states without it."""
+    """Basis of the admissible control variations on each piece: w is a combination of its columns; shape (pieces, n,
+    r). ``None`` means that all n components of w vary independently."""
 
     @classmethod
     def of(
@@ -66,22 +68,24 @@ class Arc:
         met: Mapping[int, Met] | None = None,
         controls: int | None = None,
     ) -> Arc:
-        """The accessory problem that linearised extremal equations give, by the derivatives of least H over controls.
+        """Return the accessory problem from linearised extremal equations, by derivatives of the minimised H.
 
         Parameters
         ----------
         times
-            The ends and middles of steps, shape (2 K + 1,).
+            Times of the ends and midpoints of steps, shape (2 K + 1,).
         slopes
-            The rates of states and costates by these and by explicit time, shape (2 K + 1, 2 n, 2 n + 1).
+            Derivatives of the rates of states and costates by these and by explicit time, shape (2 K + 1, 2 n, 2 n +
+            1).
         rates
-            The rates themselves, shape (2 n, 2 K + 1).
+            Rates of states and costates, shape (2 n, 2 K + 1).
         hamiltonian
-            H by explicit time, once and twice, shapes (2 K + 1,).
+            First and second derivative of H with respect to explicit time, shapes (2 K + 1,).
         state, cost
             Units of states and time, shape (n + 1,), and of the cost.
         controls
-            How many there are, if each piece is a step and its changes are to be as many.
+            Number of controls, to which the variations of each piece are limited if a piece is one step; otherwise
+            ``None``.
         """
         n, (by_time, twice) = len(rates) // 2, hamiltonian
         motion, follow, restoring = np.zeros((3, len(times), n + 1, n + 1))
@@ -106,17 +110,17 @@ class Arc:
 
     @property
     def widths(self) -> tuple[float, int]:
-        """The length of a step, and how many there are in a piece or, without any, in the whole arc."""
+        """Return the length of a step, and the number of steps in a piece or, without pieces, in the whole arc."""
         steps = (len(self.motion) - 1) // 2
         return self.lasting / max(steps, 1), steps // max(self.pieces, 1)
 
     def stepped(self, k: int, x: Array, w: Array, share: Array) -> tuple[Array, Array]:
-        """Where changes are in the middle and at the end of a step, by the classical Runge-Kutta method.
+        """Return the variations in the middle and at the end of a step, by the classical Runge-Kutta method.
 
         Parameters
         ----------
         share
-            The change of the arc's length, relative to it.
+            Change of the arc's length, relative to its length.
         """
         h, (a, b, c) = self.widths[0], (2 * k, 2 * k + 1, 2 * k + 2)
 
@@ -132,20 +136,20 @@ class Arc:
 
     @property
     def columns(self) -> int:
-        """How many changes of the continuous controls there are."""
+        """Return the number of control variations on the arc."""
         return self.pieces * (self.motion.shape[1] if self.basis is None else self.basis.shape[2])
 
     def added(self, form: Array, x: Array, length: Array, own: int, ties: list[Array]) -> Array:
-        """Add what the arc gives to a form and to ties, and return the states at its end by all changes.
+        """Add the arc's contribution to a form and to constraints, and return the variations of the states at its end.
 
         Parameters
         ----------
         x
-            Those at its beginning.
+            Variations of the states at the beginning of the arc.
         length
-            The change of its length.
+            Change of the arc's length, for each variation.
         own
-            The first column of its continuous controls.
+            Index of the first column that belongs to the arc's continuous controls.
         """
         self._meet(0, form, x, ties)
         if not self.lasting:
@@ -180,7 +184,7 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Met:
-    """Conditions at one time: rows that vanish on the states, shape (c, n), and a form in these, shape (n, n)."""
+    """Linear conditions on the states at one time, rows of shape (c, n), and a quadratic form in them, shape (n, n)."""
 
     kept: Array
     curved: Array | None = None
@@ -188,23 +192,24 @@ class Met:
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """The form in changes of the lengths of arcs, in units of the duration, and then of the continuous controls.
+    """The second variation as a quadratic form.
 
-    The latter are normed so that by themselves they would give the unit matrix.
+    Its arguments are changes of arc lengths, in units of the duration, followed by variations of the continuous
+    controls. The latter are normalised so that their own cost is the unit matrix.
     """
 
     arcs: Sequence[Arc]
     form: Array
-    """Shape (P, P), in units of the cost."""
+    """Matrix of the form, shape (P, P), in units of the cost."""
     lengths: int
-    """How many of the changes are of lengths."""
+    """Number of changes of arc lengths among the arguments."""
     ties: Array
-    """Rows that vanish where the end and the entries are kept, shape (c, P)."""
+    """Rows of the linear constraints that keep the end conditions and the entries of boundary arcs, shape (c, P)."""
     free_time: bool
     """Whether the final time is free."""
 
     def kept(self) -> tuple[Array, Array]:
-        """Sizes that make all changes comparable, and directions relative to these that keep the ties, as columns."""
+        """Return scaling factors that make all arguments comparable, and a basis under the constraints."""
         size, lengths = np.sqrt(np.abs(np.diag(self.form))), self.lengths
         size[:lengths] = max(size[:lengths].max(), 1e-300)
         size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
@@ -212,23 +217,23 @@ class Quadratic:
         return size, kernel(rows / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300))
 
     def reduced(self) -> tuple[Array, Array]:
-        """The form where the ties vanish, relative to its diagonal, and the changes that it is about, as columns."""
+        """Return the form under the constraints, relative to its diagonal, and its variations as columns."""
         size, free = self.kept()
         return free.T @ (self.form / size / size[:, None]) @ free, free / size[:, None]
 
     @property
     def curvature(self) -> float:
-        """The smallest eigenvalue where the ties vanish, relative; infinite where they fix all."""
+        """Return the smallest relative eigenvalue under the constraints; infinite if no variation is possible."""
         form = self.reduced()[0]
         return float(np.linalg.eigvalsh(form).min()) if form.size else float("inf")
 
     def flat_by_shift(self, flat: float) -> bool:
-        """Whether the form vanishes where all happens later, in that direction and no other.
+        """Return whether the form vanishes for a shift of the whole motion in time, and for no other variation.
 
         Parameters
         ----------
         flat
-            Up to which an eigenvalue counts as zero.
+            Magnitude up to which an eigenvalue counts as zero.
         """
         (form, _), (size, free) = self.reduced(), self.kept()
         if not form.size:
@@ -244,13 +249,13 @@ class Quadratic:
 
     @property
     def drowned(self) -> bool:
-        """Whether motions part so quickly that nothing but rounding is left of the form."""
+        """Return whether motions diverge so quickly that the form consists of rounding errors."""
         return not np.abs(np.diag(self.form)).max() * np.finfo(float).eps < DROWNED
 
     def steepest(self) -> tuple[float, Array]:
-        """The least eigenvalue, in units of what changes cost by themselves, and its direction.
+        """Return the smallest eigenvalue, relative to the cost of the variations themselves, and its direction.
 
-        Infinite where the ties fix all changes, NaN where numbers fail.
+        It is infinite if the constraints allow no variation, and NaN if the form is not finite.
         """
         if not np.isfinite(self.form).all():
             return float("nan"), np.zeros(len(self.form))
@@ -262,25 +267,25 @@ class Quadratic:
 
 
 def scaled_units(solution: Solution) -> tuple[Array, float]:
-    """Units of states and, as the last one, of time, and that of the cost: those of the scaled problem."""
+    """Return the units of the scaled problem: those of the states, with time as the last one, and that of the cost."""
     unit, n = unit_sizes(solution), len(solution.x)
     return np.append(unit[:n], float(solution.times[-1] - solution.times[0])), float(unit[0] * unit[n])
 
 
 def units(solution: Solution, state: Array) -> tuple[Array, float]:
-    """Units of states and, as the last one, of time; and that of the cost.
+    """Return units of the states, with time as the last one, and the unit of the cost.
 
     Parameters
     ----------
     state
-        Typical sizes of the states, shape (n,).
+        Typical magnitudes of the states, shape (n,).
     """
     cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
     return np.append(state, float(solution.times[-1] - solution.times[0])), cost
 
 
 def _roots(follow: Array) -> Array:
-    """Square roots of a stack of symmetric matrices that are not negative."""
+    """Return the square roots of a stack of positive semidefinite symmetric matrices."""
     values, axes = np.linalg.eigh((follow + follow.transpose(0, 2, 1)) / 2.0)
     return np.asarray((axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1))
 
@@ -288,14 +293,14 @@ def _roots(follow: Array) -> Array:
 def quadratic(
     solution: Solution, arcs: Sequence[Arc], state: Array, cost: float, groups: Sequence[int] | None = None
 ) -> Quadratic:
-    """Add up what arcs, junctions and the end give.
+    """Return the second variation as the sum of the contributions of arcs, junctions and the end.
 
     Parameters
     ----------
     state, cost
         Units of states and time, shape (n + 1,), and of the cost.
     groups
-        Which change of length each arc has its share of; its own without these.
+        Index of the length variation that each arc takes part in; ``None`` if each arc has its own.
     """
     lasting, groups = float(state[-1]), groups if groups is not None else range(len(arcs))
     lengths, own = max(groups) + 1, max(groups) + 1
@@ -316,7 +321,7 @@ def quadratic(
 
 
 def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Array, cost: float) -> Array:
-    """Add to the form what the end does, and return the rows that vanish."""
+    """Add the contribution of the end to the form, and return the rows of the end constraints."""
     instance, n, (tf, end, lam) = solution.instance, len(solution.x), final_values(solution)
     nu, _ = multipliers(instance, tf, end, lam)
     table = instance.model.boundary_jacobian(

@@ -1,10 +1,10 @@
-"""What is free at the start and among the parameters: the slope of the minimum cost by it, and what certificates say.
+"""Transversality at a free initial time: derivatives of the minimum cost with respect to free initial quantities.
 
-The minimum cost V of the problem with all these given changes by the costate of an initial state, by -H of the initial
-time, and by the integral of H_p with what the end adds of a parameter (Bryson and Ho, Applied Optimal Control, 2.8 and
-3.3; it is the costate of p as a state with p' = 0). Where these vanish the start is stationary. The accessory problem
-with a free start is positive exactly where that with a given one is, and so is the second derivative of V: it is what
-is left of the whole form when the motion has been minimised over.
+The minimum cost V as a function of given initial values and parameters has as its derivative the initial costate for an
+initial state, -H for the initial time, and the integral of H_p plus the contribution of the end for a parameter (Bryson
+and Ho, Applied Optimal Control, 2.8 and 3.3; it is the costate of p as a state with p' = 0). If these vanish, the
+initial values are stationary. The accessory problem with a free start is positive exactly if that with a given start
+and the second derivative of V are positive, since V is the minimum over the motion.
 """
 
 from __future__ import annotations
@@ -24,34 +24,34 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.status import Verdict
 
 STATIONARY = 1e-8
-"""Largest slope of the minimum cost by what is free, relative."""
+"""Largest relative derivative of the minimum cost with respect to a free quantity that counts as zero."""
 
 FLAT = 1e-5
-"""Relative curvature of the minimum cost below which nobody can tell whether there is any."""
+"""Relative curvature of the minimum cost below which its sign cannot be determined."""
 
 STILL = 1e-2
-"""Share of the cost that curvatures are measured by at least: what is smaller by FLAT besides is lost in noise."""
+"""Minimum reference for curvatures, relative to the cost. Curvatures smaller than ``FLAT`` times it count as zero."""
 
 COMPLEX_STEP = 1e-30
 
 
 @dataclass(frozen=True)
 class Slope:
-    """The slope of the minimum cost by something that is free."""
+    """Derivative of the minimum cost with respect to a free quantity."""
 
     value: float
     size: float
-    """The size of the terms that it consists of."""
+    """Sum of the magnitudes of the terms that the derivative consists of."""
 
     @property
     def relative(self) -> float:
-        """Infinite where numbers fail."""
+        """Return the magnitude of the derivative relative to ``size``; infinite if it is not finite."""
         found = abs(self.value) / max(self.size, 1e-300)
         return float(found) if np.isfinite(found) else float("inf")
 
 
 def slope(solution: Solution, unknown: Unknown) -> Slope:
-    """The slope of the minimum cost by what is free, at a solution with that given."""
+    """Return the derivative of the minimum cost with respect to a free quantity, at its value in the solution."""
     if unknown.place is Place.INITIAL:
         lam, x = np.abs(solution.lam).max(axis=1), np.abs(solution.x).max(axis=1)
         i = unknown.index
@@ -71,7 +71,7 @@ def slope(solution: Solution, unknown: Unknown) -> Slope:
 
 
 def _along(solution: Solution, index: int) -> tuple[float, float]:
-    """The integral of H_p, and of its terms' magnitudes, by Simpson's rule with Hermite's midpoints."""
+    """Return the integrals of H_p and of the magnitudes of its terms, by Simpson's rule with Hermite midpoints."""
     instance, model, p = solution.instance, solution.instance.model, solution.instance.parameters
     t, x, u, lam = solution.times, solution.x, solution.u, solution.lam
     h = np.diff(t)
@@ -88,7 +88,7 @@ def _along(solution: Solution, index: int) -> tuple[float, float]:
     moved = _stepped(p, index)
 
     def terms(*at: Array) -> Array:
-        """Terms of H_p: each costate times the slope of a rate, and the slope of the running cost."""
+        """Return the terms of H_p: each costate times the derivative of its rate, and that of the running cost."""
         found = np.zeros((len(x) + 1, len(at[0])))
         found[:-1] = at[3] * np.imag(model.dynamics_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
         found[-1] = np.imag(model.running_cost_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
@@ -100,7 +100,7 @@ def _along(solution: Solution, index: int) -> tuple[float, float]:
 
 
 def _at_the_end(solution: Solution, index: int) -> tuple[float, float]:
-    """What terminal cost, terminal constraints and a moving reference add, and the size of that."""
+    """Return the contribution of terminal cost, terminal constraints and a moving reference, and its magnitude."""
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
     tf, x, lam = final_values(solution)
     nu, _ = multipliers(instance, tf, x, lam)
@@ -122,20 +122,20 @@ def _at_the_end(solution: Solution, index: int) -> tuple[float, float]:
 
 
 def _stepped(parameters: tuple[float, ...], index: int) -> tuple[Any, ...]:
-    """Parameters, one of them with a complex step."""
+    """Return parameters with a complex step added to one of them."""
     return tuple(p + 1j * COMPLEX_STEP * (k == index) for k, p in enumerate(parameters))
 
 
 @dataclass(frozen=True)
 class Curvature:
-    """How the minimum cost is curved in what is free."""
+    """Curvature of the minimum cost with respect to free initial quantities."""
 
     smallest: float
-    """Relative; NaN where it was not resolved."""
+    """Smallest curvature, relative; NaN if it was not resolved."""
 
     @property
     def checks(self) -> list[Check]:
-        """Each is a deficit that must not be positive."""
+        """Return checks of the second-order condition at the start, each of a deficit that must not be positive."""
         if not np.isfinite(self.smallest):
             return [Check("second-order condition at the free initial point not resolved", 1.0, 0.0)]
         found = [Check("second-order condition at the free initial point", float(not self.smallest > -FLAT), 0.0)]
@@ -146,7 +146,10 @@ UNRESOLVED = Curvature(float("nan"))
 
 
 def softest(form: Array, least: float) -> tuple[float, Array]:
-    """The least curvature, relative to those along the axes (the least that counts or more), and its direction."""
+    """Return the smallest relative curvature and its direction.
+
+    Curvatures are relative to those along the axes, which count as at least ``least``.
+    """
     unit = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(form)), max(least, 1e-300)))
     values, vectors = np.linalg.eigh(form * np.outer(unit, unit))
     direction = unit * vectors[:, 0]
@@ -154,12 +157,12 @@ def softest(form: Array, least: float) -> tuple[float, Array]:
 
 
 def with_start(certificate: Certificate, solution: Solution, sufficient: Sequence[Check]) -> Certificate:
-    """The certificate of a solution with its start given, and what must hold besides where it is free.
+    """Return a certificate extended by the conditions that a free start requires as well.
 
     Parameters
     ----------
     sufficient
-        What was found of solutions beside it, where the necessary conditions hold.
+        Checks of the second-order condition at the free start, used if the necessary conditions hold.
     """
     first = [
         Check(f"transversality at the initial time: {unknown.name}", slope(solution, unknown).relative, STATIONARY)
@@ -173,5 +176,5 @@ def with_start(certificate: Certificate, solution: Solution, sufficient: Sequenc
 
 
 def settled(solution: Solution) -> Solution:
-    """A solution as one of the instance in which everything is given as it was found."""
+    """Return a solution whose instance has the free initial quantities given at the values that were found."""
     return replace(solution, instance=replace(solution.instance, free=()))

@@ -1,4 +1,4 @@
-"""Stated times of an answer, of events and of switching, beside what its trajectory shows at them."""
+"""Comparison of the stated times of an answer, of events and of switching, with its trajectory."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from satsym.solvers.failures import tried
 from satsym.status import Verdict
 
 ARCS = ("bang-bang", BOUNDARY_ARCS)
-"""Methods whose answers are in arcs."""
+"""Names of the methods whose answers consist of arcs."""
 
 TIMES = "stated times of events"
 SATURATION = "stated times of saturation"
 TO_A_NODE = "stated switching times, to the spacing of the nodes"
 TIMES_APART, MET = 1e-8, 1e-6
-"""Share of the duration by which a stated time may be off a junction, and share of the range of a control by which the
-law may be off its bound at a stated time."""
+"""Largest distance of a stated time from a junction, relative to the duration; and largest distance of the control law
+from its bound at a stated time, relative to the range of the control."""
 
 ACTIVE, ROUNDED_OFF = 1e-9, 1e-12
-"""Shares of its size along the way up to which a path constraint is active, and above which it is seen not to be all
-along: between a touch point and an arc soon after it is hardly left."""
+"""Largest magnitude of a path constraint, relative to its largest value along the motion, at which the constraint
+counts as active; and the smallest magnitude at which it counts as inactive on an interval. The latter is small since a
+constraint hardly leaves its boundary between a touch point and an arc soon after it."""
 
 
 def with_stated_times(certificate: Certificate, solution: Solution) -> Certificate:
-    """A certificate with the stated times of an answer compared; where one is wrong, it fails."""
+    """Return a certificate with checks of the stated times of an answer; its verdict is "failed" if one is wrong."""
     with np.errstate(all="ignore"):
         found = tried(lambda: checks(solution)) or []
     verdict = certificate.verdict if all(check.passed for check in found) else Verdict.FAILED
@@ -39,13 +40,12 @@ def with_stated_times(certificate: Certificate, solution: Solution) -> Certifica
 
 
 def checks(solution: Solution) -> list[Check]:
-    """Compare stated times with the trajectory; none where an answer states none and shows none.
+    """Compare stated times with the trajectory; the list is empty if the answer has no such times.
 
-    Where a control switches infinitely often, no law shows its switching times again, and nothing but the nodes tells
-    where they are.
+    If a control switches infinitely often, no control law reproduces its switching times; only the nodes show them.
 
-    The trajectory of an answer in arcs has two nodes at each junction, and every junction has an event or a switching
-    time. Where the control is continuous, the law without bounds meets a bound at each stated time.
+    The trajectory of an answer in arcs has two nodes at each junction, and each junction has an event or a switching
+    time. If the control is continuous, the unbounded control law reaches a bound at each stated time.
     """
     if solution.interval is not None:
         return [Check(TO_A_NODE, _off_changes(solution), 0.0)]
@@ -58,7 +58,7 @@ def checks(solution: Solution) -> list[Check]:
 
 
 def _off_junctions(solution: Solution) -> float:
-    """Largest distance of a stated time from the nearest junction, or the reverse, as a share of the duration."""
+    """Return the largest distance between stated times and junctions, relative to the duration."""
     if not all(_shown(solution, event.kind, event.name, event.t) for event in solution.events):
         return 1.0
     times = solution.times
@@ -73,7 +73,7 @@ def _off_junctions(solution: Solution) -> float:
 
 
 def _shown(solution: Solution, kind: str, name: str, t: float) -> bool:
-    """Whether there is such an event: a constraint becomes active, ceases to be, or is active for an instant only."""
+    """Return whether the trajectory shows a stated event: a constraint becomes active or inactive, or is touched."""
     instance, times = solution.instance, solution.times
     if kind == "interior":
         return name in [one.name for one in instance.model.spec.interior]
@@ -98,7 +98,7 @@ def _shown(solution: Solution, kind: str, name: str, t: float) -> bool:
 
 
 def _off_changes(solution: Solution) -> float:
-    """Whether a control stays the same around a time at which it is stated to switch: 1 then, else 0."""
+    """Return 1 if a control is constant around a time at which it is stated to switch, otherwise 0."""
     for row, stated in zip(solution.u, solution.switching_times, strict=True):
         for t in stated:
             k = int(np.searchsorted(solution.times, t))
@@ -108,7 +108,7 @@ def _off_changes(solution: Solution) -> float:
 
 
 def _off_jumps(solution: Solution) -> float:
-    """Largest distance of the stated time of a jump from the nodes on either side, as a share of the duration."""
+    """Return the largest distance of a stated jump from the nearest node, relative to the duration."""
     names, times = solution.instance.model.spec.control_names, solution.times
     if any(one.name not in names for one in solution.events):
         return 1.0
@@ -116,10 +116,10 @@ def _off_jumps(solution: Solution) -> float:
 
 
 def _off_bounds(solution: Solution) -> float:
-    """Largest distance of the law from its bound at a stated time; 1 where a bound is met and no time is stated.
+    """Return the largest distance of the control law from a bound at stated times, relative to its range.
 
-    Between nodes, states and costates are the cubics with their values and rates at both. A control that jumps from
-    bound to bound has its law on neither when it jumps, and the time of the jump is compared as such.
+    Returns 1 if the law reaches a bound without a stated time. Between nodes, states and costates are cubic Hermite
+    polynomials. The time of a jump from bound to bound, where the law is on neither bound, is compared elsewhere.
     """
     instance, times = solution.instance, solution.times
     within, lasting = instance.control_set, float(times[-1] - times[0])

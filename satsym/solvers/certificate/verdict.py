@@ -1,4 +1,4 @@
-"""From measured conditions to a verdict."""
+"""Derivation of a certificate's verdict from the measured conditions."""
 
 from __future__ import annotations
 
@@ -29,17 +29,19 @@ from satsym.solvers.iteration import MOST_ITERATIONS, Limits, deadline_of
 from satsym.solvers.search.tried import Past
 
 CROSSED = 1e-9
-"""Least rate at which one minimiser of H overtakes another, in units of what the jump changes of the rates."""
+"""Minimum rate at which one minimiser of H overtakes another, relative to the change of the rates at the jump. Below
+it, both minimisers stay equally good after the jump."""
 
 LOOKED_AT, GRID = 9, 201
-"""Times within a solution and values of a control at which other minimisers of H are looked for."""
+"""Number of times within a solution, and of values of a control, at which other minimisers of H are searched for."""
 
 EQUAL, OTHER_CONTROL = 1e-9, 1e-3
-"""Share of H's range by which one may be worse that is as good, and of the control's by which it is another one."""
+"""Largest difference of H, relative to its range, between equally good minimisers; and minimum difference of a control,
+relative to its range, that counts as another minimiser."""
 
 
 def certify(solution: Solution, compared: bool = True) -> Certificate | None:
-    """Certify a solution; ``None`` where there is nothing to certify.
+    """Certify a solution; ``None`` if it has no answer to certify.
 
     Parameters
     ----------
@@ -50,9 +52,8 @@ def certify(solution: Solution, compared: bool = True) -> Certificate | None:
     -------
     Certificate
         ``certified``: a strict local optimum, with no cheaper competitor among the kinds that it lists.
-        ``local minimum``: the same where none was looked for.
-        ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
-        former hold.
+        ``local minimum``: the same, but competitors were not looked for. ``extremal only``: the first-order conditions
+        hold, but a sufficient condition does not. ``failed``: a first-order condition does not hold.
     """
     return examined(solution, deadline_of(solution.instance), compared=compared)[0]
 
@@ -60,14 +61,15 @@ def certify(solution: Solution, compared: bool = True) -> Certificate | None:
 def examined(
     solution: Solution, deadline: float, past: Past | None = None, *, compared: bool = True
 ) -> tuple[Certificate | None, Solution | None]:
-    """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
+    """Return the certificate of a solution, and the cheapest competitor if it is cheaper than the solution.
 
     Parameters
     ----------
     deadline
-        On the clock of :func:`~satsym.solvers.iteration.computed`; what is not compared by then is said.
+        Deadline on the clock of :func:`~satsym.solvers.iteration.computed`; the certificate lists what was not
+        compared.
     past
-        What was found beside earlier answers; what is found now is added.
+        Results found beside earlier answers; new results are added to it.
     compared
         Whether competitors are looked for.
     """
@@ -84,14 +86,14 @@ def examined(
 def _judged(
     solution: Solution, deadline: float, past: Past | None, compared: bool, free: tuple[Unknown, ...]
 ) -> tuple[Certificate, Solution | None]:
-    """The certificate that the kernels give, whatever they are worth, and the cheapest competitor.
+    """Return the certificate from these kernels, without a test of their consistency, and the cheapest competitor.
 
     Parameters
     ----------
     solution
-        With its start given.
+        Solution with its initial values given.
     free
-        What competitors may choose besides.
+        Initial states, initial time and parameters that competitors may choose as well as the final state.
     """
     solution = revolutions.as_stated(solution)
     if solution.interval is not None:
@@ -137,9 +139,10 @@ def _judged(
 
 
 def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
-    """What is measured along the flow from the initial costates, or node by node where that flow can tell nothing.
+    """Return checks of first-order conditions along the flow from the initial costates, or node by node.
 
-    So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
+    The latter is used if the flow fails them and its own rounding grows beyond the tolerances. The list is empty if
+    neither flow is finite.
     """
     recomputed = (along and closed_flow(solution, along)) or flow(solution)
     checks = conditions.first_order(solution, recomputed) if recomputed else []
@@ -155,7 +158,7 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
 
 
 def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[Check]:
-    """Each is a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
     return [
         Check("legendre-clebsch", float(not legendre > 0.0), 0.0),
         *_jump_checks(solution),
@@ -164,7 +167,7 @@ def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[C
 
 
 def _jump_checks(solution: Solution) -> list[Check]:
-    """What jumps between minimisers of H must keep for the second variation to be known.
+    """Return checks of the conditions at jumps of the control under which the second variation is known.
 
     Each check is a deficit that must not be positive.
     """
@@ -184,9 +187,9 @@ def _jump_checks(solution: Solution) -> list[Check]:
 
 
 def _ties(solution: Solution) -> int:
-    """How often, from one of the times looked at to the next, another value of a control stays as good for H.
+    """Return the number of intervals between tested times on which another value of a control is equally good for H.
 
-    Where that is so for a while, no control is the best one: any two may take turns. At single instants it may be so.
+    If this lasts, no control is optimal by itself, since any two may alternate. At single instants it is harmless.
     """
     if not solution.instance.model.spec.stationary:
         return 0
@@ -196,7 +199,7 @@ def _ties(solution: Solution) -> int:
 
 
 def _tied(solution: Solution, node: int) -> bool:
-    """Whether H has another minimiser at a node, one control being changed at a time."""
+    """Return whether H has another minimiser at a node when one control is changed at a time."""
     from scipy.optimize import minimize_scalar
 
     instance, model = solution.instance, solution.instance.model

@@ -1,1 +1,1 @@
-"""What a solution is compared with: neighbours, other starts of the search, and controls that are drawn."""
+"""Motions that a solution is compared with: other starts of the direct search and randomly drawn controls."""

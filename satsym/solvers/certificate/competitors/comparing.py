@@ -1,7 +1,8 @@
-"""Competitors: what other starts of the direct search come to, and controls that are drawn.
+"""Comparison of a solution with competitors: results of the direct search from other starts, and random controls.
 
-How far each start may go is limited by work, so that what is found is the same on every machine; only time that is up
-can end it before, and that is said.
+A competitor is another motion of the same problem whose cost is compared with the cost of the solution. The effort for
+each start is limited by work, not by time, so that every machine finds the same competitors; only the time limit can
+end a search earlier, and then the certificate says so.
 """
 
 from __future__ import annotations
@@ -26,13 +27,14 @@ from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows
 
 COARSE = {Kind.DURATIONS: 1e-6}
-"""Relative difference of costs that is none between motions whose controls switch, where it is not ``SAME_COST``."""
+"""Relative difference below which two costs count as equal if controls switch, for kinds that need another value than
+``SAME_COST``."""
 
 WORK = 1_000_000
-"""Unknowns times iterations that the search may take from a control that was drawn."""
+"""Maximum work, in unknowns times iterations, of the search that starts from a randomly drawn control."""
 
 SEED, DURATIONS = 20012, 12
-"""Seed of the shorter durations that are drawn, and how many there are."""
+"""``SEED`` is the seed of the random shorter durations and ``DURATIONS`` is their number."""
 
 
 def compared(
@@ -43,12 +45,12 @@ def compared(
     Parameters
     ----------
     limits
-        Limits of time; competitors that are not solved within them count as not checked.
+        Time and work limits; competitors that are not solved within these limits count as not checked.
     past
-        What was found beside earlier answers, and how many these were: the seed of what is drawn, as a solution that
-        was found from a drawn control needs another one.
+        Earlier answers and their number, which is the seed of the random controls: a solution that was found from a
+        random control needs other controls than the earlier one.
     free
-        What competitors may choose besides the end.
+        Initial states, initial time and parameters that competitors may choose as well as the final state.
     """
     instance, switches, past = solution.instance, switching(solution), past or Past()
     if not switches and none_conceivable(solution):
@@ -80,19 +82,19 @@ def compared(
 
 
 def switching(solution: Solution) -> bool:
-    """Whether an answer consists of arcs between which controls switch."""
+    """Return whether the controls of a solution switch between arcs."""
     return solution.method == "bang-bang" or solution.instance.model.spec.switching
 
 
 def _from_controls(
     solution: Solution, seed: int, limits: Limits, free: tuple[Unknown, ...]
 ) -> tuple[Compared | None, Solution | None]:
-    """Compare a solution with the cheapest of the drawn controls, and search from that control.
+    """Compare a solution with the cheapest of the randomly drawn controls, and search from that control.
 
     Returns
     -------
-    What the comparison comes to, ``None`` if no drawn control costs less than the solution; and the extremal found from
-    that control, ``None`` if none was found that costs no more than the control.
+    Comparison with that control, ``None`` if no drawn control costs less than the solution. Extremal found from that
+    control, ``None`` if the search found none that costs at most as much as the control.
     """
     drawn = drawn_below(solution, seed)
     if drawn is None:
@@ -104,7 +106,7 @@ def _from_controls(
 
 
 def _led(solution: Solution, drawn: Drawn, limits: Limits, free: tuple[Unknown, ...]) -> Solution | None:
-    """The extremal to which the search is led by a control that was drawn, where it costs no more than that."""
+    """Return the extremal found by the search from a drawn control, or ``None`` if it costs more than this control."""
     from satsym.solvers.search import solving
 
     spec = solution.instance.model.spec
@@ -122,10 +124,10 @@ def _led(solution: Solution, drawn: Drawn, limits: Limits, free: tuple[Unknown, 
 
 
 def none_conceivable(solution: Solution) -> bool:
-    """Whether no control can cost less: the state costs nothing, and the control is the least of the running cost.
+    """Return whether no control can cost less than the solution: neither states nor controls can lower the cost.
 
-    So it is where all costates vanish, neither the terminal nor the running cost depends on the state, and no control
-    makes the latter smaller: looked at for states and controls drawn all around those of the solution.
+    This is so if all costates vanish, neither the terminal nor the running cost depends on the state, and the control
+    minimises the running cost. The last two conditions are tested at random states and controls around the solution.
     """
     if solution.lam.any() or solution.instance.model.spec.multipliers:
         return False
@@ -144,10 +146,10 @@ def none_conceivable(solution: Solution) -> bool:
 
 
 def _shorter_costs(solution: Solution, limits: Limits) -> list[float]:
-    """Least costs of a linear motion in shorter durations, NaN where one is too short to arrive.
+    """Return minimum costs of a linear motion for random shorter durations, NaN where the end cannot be reached.
 
-    All controls of these durations are covered. There are no costs where the motion is not linear, or where its time is
-    given or costs nothing.
+    All admissible controls of these durations are covered. The list is empty if the motion is not linear, or if its
+    duration is given or costs nothing.
     """
     instance, rng = solution.instance, np.random.default_rng(SEED)
     motion = None if instance.model.spec.multipliers or instance.tf is not None else linear_motion(instance)

@@ -1,4 +1,4 @@
-"""What competitors of each kind came to, and what certificates make of that."""
+"""Costs of the competitors of each kind, and the checks that certificates derive from these costs."""
 
 from __future__ import annotations
 
@@ -13,43 +13,45 @@ from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.reintegration.flow import products
 
 HIDDEN = 1e-14
-"""Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
+"""Relative rounding error of the final states. Differences of costs that such an error explains count as zero."""
 
 COST_MARGIN = 1e-9
-"""Relative margin by which a competitor may seem cheaper: its own error."""
+"""Relative amount by which a competitor may be cheaper without refuting the solution: the error of its own cost."""
 
 SAME_COST = 1e-9
-"""Relative error of refined costs; it makes no difference."""
+"""Relative error of refined costs. Costs that differ by less count as equal."""
 
 UNCOMPARED = "no comparison: no competitor was solved"
-"""The check that fails where that is so."""
+"""Name of the check that fails if no competitor was solved."""
 
 LARGEST_MARGIN = 1e300
-"""Beyond this no margin is: one that is infinite has nothing to compare."""
+"""Magnitude to which finite margins are clipped. Larger, infinite margins mean that there is nothing to compare."""
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What competitors of one kind came to."""
+    """Comparison of a solution with the competitors of one kind."""
 
     summary: Competitors
-    """As the certificate has it."""
+    """Counts and cheapest cost, in the form that the certificate reports."""
     margin: float
-    """Excess of the cheapest, relative to the cost; negative where it is cheaper, infinite without any."""
+    """Excess cost of the cheapest competitor relative to the cost of the solution. Negative if it is cheaper than the
+    solution, infinite if no competitor has a cost."""
     interrupted: bool
-    """Whether time was up before all were tried."""
+    """Whether the time limit was reached before all competitors were tried."""
     enough: bool = False
-    """Whether it says something even where none was solved: controls were drawn, or the motion is linear."""
+    """Whether the comparison is conclusive even if no competitor was solved: controls were drawn, or the motion is
+    linear."""
 
     @property
     def checks(self) -> list[Check]:
-        """Checks that no competitor is cheaper, if one has a cost, and that there was time for all."""
+        """Return the checks that no competitor is cheaper, if one has a cost, and that the time limit was kept."""
         cheaper = Check(f"cheaper by: {self.summary.kind.value}", max(0.0, -self.margin), COST_MARGIN)
         late = Check(f"not checked within the time limit: {self.summary.kind.value}", 1.0, 0.0)
         return [*([cheaper] if math.isfinite(self.margin) else []), *([late] if self.interrupted else [])]
 
     def joined(self, other: Compared) -> Compared:
-        """This comparison with what others of the kind came to."""
+        """Return this comparison combined with another comparison of the same kind."""
         least = min(self, other, key=lambda one: one.margin)
         count, solved = (getattr(self.summary, name) + getattr(other.summary, name) for name in ("tried", "solved"))
         summary = Competitors(self.summary.kind, count, solved, least.summary.cheapest)
@@ -58,32 +60,35 @@ class Compared:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """All kinds that a problem allows."""
+    """Comparisons of a solution with the competitors of all kinds that its problem allows."""
 
     kinds: tuple[Compared, ...] = ()
-    """What was compared, kind by kind."""
+    """Results of the comparisons, one for each kind of competitor."""
     not_checked: tuple[Kind, ...] = ()
-    """Kinds that nobody tried, of which nothing was solved, or for which time was up."""
+    """Kinds of competitors that were not tried, of which none was solved, or for which the time limit was reached."""
     better: Solution | None = None
-    """A cheaper extremal that is exact."""
+    """Cheaper extremal of full accuracy, ``None`` if none was found."""
     proved: tuple[Check, ...] = ()
-    """Why there are no others, where that is known."""
+    """Checks that replace the comparison if it is known that no cheaper motion exists."""
 
     def joined(self, other: Comparison) -> Comparison:
-        """This comparison with what another has compared."""
+        """Return this comparison combined with another comparison of the same solution."""
         kinds, missing = self.kinds + other.kinds, self.not_checked + other.not_checked
         return Comparison(kinds, missing, self.better or other.better, self.proved + other.proved)
 
     @property
     def checks(self) -> list[Check]:
-        """Checks of all kinds, and that any competitor has a cost: else a solution was compared with nothing."""
+        """Return the checks of all kinds, and one that fails if no competitor has a cost (nothing was compared)."""
         none = not any(kind.summary.solved or kind.interrupted or kind.enough for kind in self.kinds)
         found = [*self.proved, *(check for kind in self.kinds for check in kind.checks)]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
 
 
 def going_round(instance: Instance) -> list[Kind]:
-    """Revolutions, where the uncontrolled motion looks the same when it is turned: then other numbers may do."""
+    """Return the kind "revolutions" if the uncontrolled motion has a rotational symmetry, else an empty list.
+
+    With this symmetry other numbers of revolutions may lead to the same final state.
+    """
     from satsym.solvers.symmetry import symmetric
 
     return [Kind.REVOLUTIONS] if symmetric(instance) else []
@@ -92,12 +97,12 @@ def going_round(instance: Instance) -> list[Kind]:
 def summed(
     solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool, coarse: float = SAME_COST
 ) -> Compared:
-    """What so many attempts at a kind came to, of which some have costs.
+    """Summarise the attempts to find competitors of one kind.
 
     Parameters
     ----------
     coarse
-        Relative difference of costs that is none.
+        Relative difference of costs below which two costs count as equal.
     """
     cheapest = min(costs, default=float("nan"))
     excess = margin(cheapest, solution.objective, coarse=coarse, hidden=hidden(solution))
@@ -105,14 +110,15 @@ def summed(
 
 
 def hidden(solution: Solution) -> float:
-    """The difference of costs that rounding hides."""
+    """Return the difference of costs that rounding of the final states may cause."""
     return HIDDEN * products(solution)
 
 
 def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
-    """Excess of a competitor, relative to the cost.
+    """Return the excess cost of a competitor relative to the cost of the solution.
 
-    Differences below ``coarse``, or of costs below ``hidden``, are its own error.
+    Relative differences below ``coarse`` and absolute differences below ``hidden`` count as zero, because they are
+    within the error of the competitor.
     """
     if not np.isfinite(competitor):
         return float("inf")

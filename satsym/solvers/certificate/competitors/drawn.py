@@ -1,10 +1,11 @@
-"""Controls and extremals that are drawn: what a solution is compared with beside the starts of the search.
+"""Randomly drawn controls and extremals, with which a solution is compared as well as with other starts of the search.
 
-Where no state is asked of the end, all controls are admissible, and none costs less than an optimum. Extremals are
-found by descents, which need not leave the basin in which they begin. A simulation knows no basins: where one control
-of many costs less, what was found is not the optimum, whatever else it is.
+If no final state is prescribed, all controls are admissible, and no control costs less than the optimum. Solvers find
+extremals by descent, which need not leave the region of attraction of a local minimum. A simulation has no such
+restriction: if one of many random controls costs less, the solution is not the optimum.
 
-Extremals are drawn where a motion is likely to have several minima that few starts show (:func:`several_likely`).
+Extremals are drawn if the problem is likely to have several minima that a few starts do not show
+(:func:`several_likely`).
 """
 
 from __future__ import annotations
@@ -26,52 +27,57 @@ from satsym.solvers.spare_time import frequency, longest, rates_by_states
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 
 GROUPS, DRAWN, WAVES = 8, 96, 4
-"""Groups of controls, apart lest all gather in the basin of the solution; controls of each, and harmonics."""
+"""Number of independent groups of random controls, which keeps them from gathering about one local minimum; number of
+controls in each group; number of harmonics of each control."""
 
 SMALLEST_AMPLITUDE, LARGEST_AMPLITUDE = 0.5, 60.0
-"""Amplitudes of the groups, in sizes of a control."""
+"""Amplitudes of the first and the last group, relative to the largest magnitude of a control."""
 
 ROUNDS, ELITE = 4, 6
-"""After the first: each group draws others about the cheapest of its last, half as far away each time."""
+"""Number of rounds after the first, and number of the cheapest controls of each group about which the next round draws
+others, with half the spread each time."""
 
 LONGER = 0.7
-"""Size of the logarithms by which durations that are chosen are multiplied."""
+"""Standard deviation of the logarithm of the factor by which free durations are multiplied."""
 
 STEPS = 48
-"""How many each motion that is drawn has."""
+"""Number of integration steps of each random motion."""
 
 CERTAIN = 0.1
-"""Share of what a control saves by which twice as many steps may make it cost something else."""
+"""Largest change of the cost that twice as many steps may cause, relative to the saving of a control. A control with a
+larger change does not count as cheaper."""
 
 WORTH = 1e-3
-"""What is saved at least, relative to the cost: less may be the error of a grid."""
+"""Minimum saving, relative to the cost, of a control that counts as cheaper. Smaller savings may be errors of the
+grid."""
 
 UNLIKE = 1.0 / 3.0
-"""Share of linearised rates by which they depart from their mean along the way, on average, where motions are nearly
-linear: one that keeps to an orbit has a seventh, one that leaves a well or falls from the top more than half."""
+"""Mean deviation of the linearised rates from their mean along the motion, relative to their magnitude, above which a
+motion counts as far from linear. A motion that stays on an orbit has about 1/7, one that leaves a potential well or
+falls from an unstable equilibrium more than 1/2."""
 
 SWING = np.pi
-"""Angle by which the quickest mode turns in time that can be paid for besides."""
+"""Phase angle of the fastest mode over the spare time, in rad, above which another swing of the motion is possible."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """The cheapest of the controls that were drawn, which costs less than a solution."""
+    """The cheapest of the randomly drawn controls, which costs less than a solution."""
 
     simulations: Simulations
     grid: Grid
-    """As long as the motion, whose duration may be chosen."""
+    """Time grid of the motion, whose duration may differ from that of the solution."""
     control: Array
-    """At nodes and midpoints, shape (m, 2 N + 1)."""
+    """Control at nodes and midpoints, shape (m, 2 N + 1)."""
     stated: Array
-    """The solution's, at the same shares of its duration."""
+    """Control of the solution at the same fractions of its duration, shape (m, 2 N + 1)."""
     states: Array
-    """At the nodes, shape (n, N + 1)."""
+    """States at the nodes, shape (n, N + 1)."""
     cost: float
 
 
 def drawable(solution: Solution) -> bool:
-    """Whether controls are drawn for a solution: where no state is asked of its end."""
+    """Return whether controls can be drawn for a solution: its final states are free and it has no path constraints."""
     return _simulated(solution) is not None
 
 
@@ -82,14 +88,14 @@ def _simulated(solution: Solution) -> Simulations | None:
 
 
 def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
-    """The cheapest of the controls drawn about a solution's, if that costs less; ``None`` where none does.
+    """Return the cheapest of the controls drawn about that of a solution, or ``None`` if none of them costs less.
 
     Parameters
     ----------
     solution
-        Of a smooth problem; nothing is known of controls that are to arrive somewhere, or keep to path constraints.
+        Solution of a smooth problem with free final states and without path constraints; otherwise nothing is drawn.
     seed
-        Of the controls.
+        Seed of the random controls.
     """
     instance, simulations = solution.instance, _simulated(solution)
     if simulations is None:
@@ -108,9 +114,10 @@ def drawn_below(solution: Solution, seed: int = 0) -> Drawn | None:
 
 
 def _cheapest_change(solution: Solution, seed: int) -> tuple[Array, float]:
-    """Draw in rounds: shares (m, WAVES) of waves that cost least when added, and how much later the cheapest ends.
+    """Draw random changes of the control in rounds and return the cheapest change.
 
-    What is drawn are these and the logarithm of the duration over the solution's.
+    Returns amplitudes of the harmonics, shape (m, WAVES), to add to the control, and the change of the duration. Both
+    are drawn, the latter as the logarithm of the ratio of durations.
     """
     rng, m = np.random.default_rng(seed), len(solution.u)
     sizes = np.repeat(np.maximum(np.abs(solution.u).max(axis=1), natural(solution)), WAVES)
@@ -135,13 +142,13 @@ def _waves(tau: Array) -> Array:
 
 
 def _stated(solution: Solution, tau: Array) -> Array:
-    """The control of a solution at shares of its duration."""
+    """Return the control of a solution at given fractions of its duration, shape (m, number of fractions)."""
     times = solution.times[0] + (solution.times[-1] - solution.times[0]) * tau
     return np.array([np.interp(times, solution.times, row) for row in solution.u])
 
 
 def _costs(solution: Solution, drawn: Array) -> Array:
-    """Roughly what a control costs with each of many changes, shape (..., m WAVES + 1); infinite if it fails."""
+    """Return approximate costs of many changes of a control, shape (..., m WAVES + 1); infinite if one fails."""
     m, changes = len(solution.u), drawn.reshape(-1, drawn.shape[-1])
     tau = np.linspace(0.0, 1.0, 2 * STEPS + 1)
     waves = np.moveaxis(changes[:, :-1].reshape(-1, m, WAVES) @ _waves(tau), 0, -1)
@@ -151,7 +158,10 @@ def _costs(solution: Solution, drawn: Array) -> Array:
 
 
 def natural(solution: Solution) -> Array:
-    """Sizes of the controls that move the state by its own size over the duration, shape (m,); 1 where none does."""
+    """Return the control magnitudes that move the state by its own magnitude over the duration, shape (m,).
+
+    Controls that do not act on the state have the magnitude 1.
+    """
     instance, lasting = solution.instance, float(solution.times[-1] - solution.times[0])
     u, x, t = (np.asarray(row)[..., :1] for row in (solution.u, solution.x, solution.times))
     by_control = np.abs(instance.model.jacobian_u_batch(t, x, u, instance.parameters))
@@ -161,7 +171,7 @@ def natural(solution: Solution) -> Array:
 
 
 def _certain(drawn: Drawn, objective: float) -> bool:
-    """Whether what a control saves is more than the error of its simulation."""
+    """Return whether the saving of a drawn control exceeds the error of its simulation."""
     saved = objective - drawn.cost
     twice = replace(drawn.simulations, steps=2 * drawn.grid.nodes.size - 2, end=drawn.grid.tf)
     fine, coarse = twice.grid(), interleave(drawn.grid.nodes, drawn.grid.midpoints)
@@ -172,12 +182,12 @@ def _certain(drawn: Drawn, objective: float) -> bool:
 
 
 def extremals_below(solution: Solution, seed: int) -> Iterator[Instance]:
-    """The instance of a solution with guesses of its states by extremals that nearly meet and seem to cost less.
+    """Yield the instance of a solution with initial guesses from approximate extremals that seem to cost less.
 
     Parameters
     ----------
     seed
-        Of what is drawn.
+        Seed of the random extremals.
     """
     from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.drawn_beside import about
@@ -194,9 +204,9 @@ def extremals_below(solution: Solution, seed: int) -> Iterator[Instance]:
 
 
 def several_likely(solution: Solution) -> bool:
-    """Whether a motion is likely to have several minima that few starts show.
+    """Return whether a problem is likely to have several minima that a few starts do not show.
 
-    So it is where it is far from linear, where it is not linear and controls switch, and where a free duration leaves
+    This is so if its motion is far from linear, if it is not linear and controls switch, or if a free duration leaves
     time for another swing.
     """
     nonlinear = any(solution.switching_times) and linear_motion(solution.instance) is None
@@ -204,9 +214,9 @@ def several_likely(solution: Solution) -> bool:
 
 
 def far_from_linear(solution: Solution) -> bool:
-    """Whether linearised rates change much along a solution.
+    """Return whether the linearised rates vary strongly along a solution.
 
-    Those of a linear motion are the same everywhere, and its least cost has one minimum where costs are convex.
+    The linearised rates of a linear motion are constant, and its minimum cost has a single minimum if costs are convex.
     """
     size = unit_sizes(solution)[: len(solution.x)]
     scaled = rates_by_states(solution, 1) * (size / size[:, None])[:, :, None]
@@ -217,6 +227,6 @@ def far_from_linear(solution: Solution) -> bool:
 
 
 def may_swing(solution: Solution) -> bool:
-    """Whether a free duration leaves time for another swing, which then need not cost more than pushing at once."""
+    """Return whether a free duration leaves time for another swing, which may cost less than direct acceleration."""
     spare = longest(solution) - float(solution.times[-1] - solution.times[0])
     return spare > 0.0 and spare * frequency(solution) > SWING

@@ -1,6 +1,6 @@
-"""Competitors from the direct search: other starts than the one that led to an answer, and what they come to.
+"""Competitors from the direct search: the costs of motions found from other starts than the one that led to an answer.
 
-Where these show nothing cheaper, extremals that are drawn are starts as well.
+If none of them is cheaper, randomly drawn extremals are used as starts as well.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from satsym.solvers.revolutions import shifted
 from satsym.solvers.search.tried import Past
 
 WORK = 2_000_000
-"""Unknowns times iterations that all starts together may take."""
+"""Maximum work of all starts together, in unknowns times iterations."""
 
 TURNED = 400_000
-"""Unknowns times iterations that the search may take for an end that is one turn away."""
+"""Maximum work, in unknowns times iterations, of the search for a final angle that differs by one turn."""
 
 GUESSED = 200_000
-"""Unknowns times iterations that the search may take from an extremal that was drawn."""
+"""Maximum work, in unknowns times iterations, of the search from a randomly drawn extremal."""
 
 
 def kinds(instance: Instance) -> list[Kind]:
-    """Kinds of starts that an instance has."""
+    """Return the kinds of competitors that an instance allows."""
     round_ = [Kind.REVOLUTIONS] if _angles(instance) else going_round(instance)
     times = [Kind.TIMES] if instance.model.spec.interior else []
     return [Kind.STARTS, *times, *([Kind.DURATIONS] if instance.tf is None else []), *round_]
@@ -39,27 +39,27 @@ def searched(
 ) -> tuple[dict[Kind, list[float]], Solution | None, set[Kind]]:
     """Solve again from each start of the search and compare the costs with that of an answer.
 
-    Starts that run out of time are left out.
+    Starts that reach the time limit are left out.
 
-    Where final angles count modulo a turn, the first start that leads to an extremal with one turn less, and with one
-    more, is compared as well; where an end can be met at once, so is the cost of that.
+    If final angles count modulo a turn, the search is repeated with one turn less and one turn more. If the final
+    conditions hold at the initial state already, the cost of a motion of no duration is compared as well.
 
     Parameters
     ----------
     past
-        What was found beside earlier answers, and how many these were: the seed of what is drawn.
+        Earlier answers and their number, which is the seed of the random extremals.
     free
-        What the starts may choose besides the end.
+        Initial states, initial time and parameters that the starts may choose as well as the final state.
 
     Returns
     -------
     dict
-        Costs of each kind that was tried, NaN where a start led to nothing.
+        Costs of each kind that was tried, NaN where a start did not lead to a motion.
     Solution
-        A cheaper extremal, if one is found: the first, which is then compared with all starts in turn; if the answer
-        belongs to a guess, which it keeps to, the cheapest.
+        A cheaper extremal, ``None`` if none was found. It is the first that was found, since it is compared with all
+        starts in turn; if the answer belongs to an initial guess of the user, it is the cheapest.
     set
-        Kinds with a motion that seems to cost less, although its cost does not settle as the mesh is refined.
+        Kinds with a motion that seems cheaper, although its cost does not converge as the mesh is refined.
     """
     from satsym.solvers.search import solving
 
@@ -100,17 +100,17 @@ def searched(
 
 
 def _angles(instance: Instance) -> list[str]:
-    """Final angles that count modulo a turn."""
+    """Return the names of the final angles that count modulo a turn."""
     return [name for name in instance.solver.free_angles if name in instance.final]
 
 
 def _turned(instance: Instance) -> list[Instance]:
-    """An instance with one turn less and one more of each such angle."""
+    """Return copies of an instance with one turn less and one more of each final angle that counts modulo a turn."""
     return [shifted(instance, {name: turns}) for name in _angles(instance) for turns in (-1, 1)]
 
 
 def _at_once(solution: Solution) -> float:
-    """The cost of ending where and when the motion begins; infinite where that is no end."""
+    """Return the cost of a motion of no duration, infinite if the initial state does not meet the final conditions."""
     from satsym.solvers.collocation.scaling import two_point
 
     lasting = float(solution.times[-1]) - solution.instance.t0

@@ -1,4 +1,4 @@
-"""Simulations of an instance beside a solution, with as few steps as tell what is compared."""
+"""Simulations of an instance for comparison with a solution, with as few steps as the comparison needs."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.regularised import sloping
 
 STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
-"""RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
-solution's end within which these follow it; the fewest that do."""
+"""Numbers of RK4 steps to try, in ascending order, each with the largest distance from the final state of the solution,
+relative to the magnitudes of the states. The first number that keeps this distance is used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Simulations:
-    """Simulations of one instance with as many steps."""
+    """Simulations of one instance with a fixed number of steps."""
 
     instance: Instance
-    """What is simulated."""
+    """The instance that is simulated."""
     rows: NDArray[np.intp]
-    """Indices of the boundary residuals that tie the final state."""
+    """Indices of the boundary residuals that constrain the final state."""
     scale: Array
-    """Sizes of these."""
+    """Typical magnitudes of these residuals."""
     steps: int
-    """How many steps each simulation takes."""
+    """Number of steps of each simulation."""
     end: float
-    """The final time."""
+    """Final time."""
 
     def grid(self, longer: float = 0.0) -> Grid:
-        """The grid of a motion to a final time that much later."""
+        """Return the time grid of a motion that ends later than ``end`` by the given time."""
         return Grid.uniform(self.instance.t0, self.end + longer, self.steps)
 
     def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
-        """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
+        """Return cost and scaled end residuals of a control given at nodes and midpoints, shape (m, 2 N + 1)."""
         instance, (x, running) = self.instance, self.motion(control, grid)
         end = tuple(x[:, -1].tolist())
         terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
@@ -54,7 +54,7 @@ class Simulations:
         return running + terminal, residual[self.rows] / self.scale
 
     def motion(self, control: Array, grid: Grid) -> tuple[Array, float]:
-        """States at the nodes and the integral of the running cost."""
+        """Return the states at the nodes and the integral of the running cost for a given control."""
         instance = self.instance
         x, _, running = instance.model.forward(
             grid.nodes, instance.initial, control[:, ::2], control[:, 1::2], instance.parameters
@@ -63,7 +63,7 @@ class Simulations:
 
 
 def simulations_of(solution: Solution) -> Simulations | None:
-    """Simulations with the fewest steps with which the solution's own control leads to its end."""
+    """Return simulations with the fewest steps that reach the final state of a solution by its control, or ``None``."""
     instance, n = solution.instance, len(solution.x)
     size, _ = typical(solution)
     fixed = np.flatnonzero(fixed_states(instance))
@@ -78,6 +78,6 @@ def simulations_of(solution: Solution) -> Simulations | None:
 
 
 def stated_control(solution: Solution, grid: Grid) -> Array:
-    """The control of a solution at nodes and midpoints, shape (m, 2 N + 1)."""
+    """Return the control of a solution at the nodes and midpoints of a grid, shape (m, 2 N + 1)."""
     times = interleave(grid.nodes, grid.midpoints)
     return np.array([np.interp(times, solution.times, row) for row in solution.u])

@@ -1,1 +1,1 @@
-"""The certificate of extremals with arcs on boundaries of path constraints."""
+"""Certificates of extremals with arcs on the boundaries of path constraints."""

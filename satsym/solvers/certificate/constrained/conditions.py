@@ -1,4 +1,4 @@
-"""The certificate of boundary arcs: the extremal again, multipliers and their signs, what makes it a minimum."""
+"""The certificate of boundary arcs: repeated integration, multipliers and their signs, and sufficient conditions."""
 
 from __future__ import annotations
 
@@ -36,23 +36,24 @@ from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.search.tried import Past
 
 NAMES = {OF_FLOW: OF_SEGMENTS}
-"""What is called otherwise where it is measured part by part."""
+"""Name of a check for an integration from the initial costates -> its name if the integration is done part by part."""
 
 SIGN = 1e-9
-"""Largest negative share of a multiplier."""
+"""Largest magnitude of a negative multiplier, relative to the largest multiplier, that counts as rounding."""
 
 CURVED = 1e-7
-"""Least curvature with the active arcs held, relative to that without costs but of the control."""
+"""Minimum second variation with fixed active arcs, relative to that of the control cost alone. Below it the sufficient
+condition counts as violated."""
 
 STRICT, BESIDE = 1e-6, 1e-6
-"""Least share of the largest multiplier at which one is strictly positive, and share of an arc beside its ends within
-which nobody looks."""
+"""Minimum multiplier that counts as strictly positive, relative to the largest; and the fraction of an arc beside its
+entry and exit within which this is not tested."""
 
 
 def certify(
     solution: Solution, deadline: float, past: Past | None = None, compared: bool = True
 ) -> tuple[Certificate, Solution | None]:
-    """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.verdict.examined`."""
+    """Certify an extremal with boundary arcs, see :func:`satsym.solvers.certificate.verdict.examined`."""
     with np.errstate(all="ignore"):
         again = replay(solution)
         if again is None:
@@ -75,14 +76,14 @@ def certify(
 
 
 def _of_other_structures(solution: Solution, deadline: float) -> Comparison:
-    """What extremals come to whose structure of boundary arcs is near that of a solution."""
+    """Compare a solution with extremals whose sequence of boundary arcs is similar to its own."""
     count, costs, late = near(solution, deadline)
     found = summed(solution, Kind.ARCS, count, costs, late)
     return Comparison((found,), () if count and not late else (Kind.ARCS,))
 
 
 def _legendre_clebsch(solution: Solution, again: Replay) -> float:
-    """Least curvature of H by the controls at the nodes, along what keeps active constraints."""
+    """Return the smallest curvature of H with respect to the controls that keep active constraints."""
     if not stationary(solution.instance):
         return conditions.legendre_clebsch(solution)
     found = []
@@ -93,9 +94,9 @@ def _legendre_clebsch(solution: Solution, again: Replay) -> float:
 
 
 def _in_segments(solution: Solution, again: Replay) -> tuple[list[Check], Replay]:
-    """First-order conditions along one flow or, where rounding that grows along it makes these fail, part by part.
+    """Check the first-order conditions along one flow or, if these fail there by the growth of rounding, part by part.
 
-    None of the parts may miss the beginning of the next one by more than the flow may miss the end.
+    The gap between a part and the beginning of the next one must not exceed the tolerance of the boundary residual.
     """
     first = _first_order(solution, again)
     if all(c.passed for c in first) or (parts := replay(solution, in_segments=True)) is None:
@@ -126,7 +127,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:
-    """Each is a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
     least, most = _least_multiplier(solution, again, strict=True)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
     vanishing = [Check("a multiplier vanishes on a boundary arc", float(not strict), 0.0)]
@@ -143,13 +144,13 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _controls(solution: Solution, piece: Piece) -> tuple[Array, Array, Array]:
-    """Times, states and controls between the nodes of an arc."""
+    """Return times, states and controls on an arc, at the nodes and between them."""
     u = control(solution.instance, piece.active, piece.times, piece.dense)
     return piece.times, piece.dense[: len(solution.x)], u
 
 
 def _stationarity(solution: Solution, again: Replay) -> float:
-    """Largest difference of the control from the one that minimises H and keeps what is active, relative."""
+    """Return the largest difference of the control from the minimiser of H on the active constraints, relative."""
     z = np.concatenate([solution.x, solution.lam])
     parts = [control(solution.instance, p.active, solution.times[p.nodes], z[:, p.nodes]) for p in again.pieces]
     law = np.concatenate(parts, axis=1)
@@ -158,7 +159,7 @@ def _stationarity(solution: Solution, again: Replay) -> float:
 
 
 def more_at_end(solution: Solution, again: Replay) -> float:
-    """H at the end under the control of the last arc less that under the law, which boundary residuals have in them."""
+    """Return H at the final time under the control of the last arc less H under the unconstrained control law."""
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
     t, z, p = solution.times[-1:], again.end[:, None], instance.parameters
     law = model.control_law_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
@@ -170,24 +171,24 @@ def more_at_end(solution: Solution, again: Replay) -> float:
 
 
 def _defect(solution: Solution, again: Replay) -> float:
-    """Largest distance of the solver's states and costates from the flow, relative to the size of each."""
+    """Return the largest distance of the solver's states and costates from the flow, relative to their magnitudes."""
     mine = np.concatenate([solution.x, solution.lam])
     return float((np.abs(mine - again.z).max(axis=1) / np.concatenate(typical(solution, FAINT_COSTATE))).max())
 
 
 def _sizes(solution: Solution, again: Replay) -> Array:
-    """Sizes of the constraints along the way."""
+    """Return the largest magnitudes of the constraints along the motion, shape (h,)."""
     return np.asarray(np.max([sizes(solution.instance, *_controls(solution, p)) for p in again.pieces], axis=0))
 
 
 def _violated(solution: Solution, again: Replay) -> float:
-    """Largest value of a constraint along the flow, relative to its size."""
+    """Return the largest violation of a path constraint along the flow, relative to the constraint's magnitude."""
     found = [values(solution.instance, *_controls(solution, p)).max(axis=1) for p in again.pieces]
     return max(0.0, float((np.max(found, axis=0) / _sizes(solution, again)).max(initial=0.0)))
 
 
 def _off_boundary(solution: Solution, again: Replay) -> float:
-    """Largest distance from the boundary on its arcs, relative."""
+    """Return the largest distance from the boundary on boundary arcs, relative to the constraint's magnitude."""
     sizes, worst = _sizes(solution, again), 0.0
     for piece in again.pieces:
         g = values(solution.instance, *_controls(solution, piece))
@@ -196,10 +197,11 @@ def _off_boundary(solution: Solution, again: Replay) -> float:
 
 
 def _off_tangency(solution: Solution, again: Replay) -> float:
-    """Largest constraint, or its rate over the duration, at entries and touch points, relative to its size.
+    """Return the largest deviation from tangency at entries and touch points, relative to the constraint's magnitude.
 
-    Of one that holds a control what decides whether it is active, at entries and exits; itself where it follows
-    another directly.
+    The deviation is the value of the constraint or its rate times the duration. For a constraint that involves the
+    control it is the quantity whose sign decides whether the constraint is active, also at exits unless another arc
+    follows directly.
     """
     instance, n, sizes, worst = solution.instance, len(solution.x), _sizes(solution, again), 0.0
     lasting = float(solution.times[-1] - solution.times[0])
@@ -229,7 +231,7 @@ def _number(solution: Solution, name: str) -> int:
 
 
 def _rates(solution: Solution, piece: Piece, place: int) -> Array:
-    """First and second rates of all constraints at an end of an arc, shape (h, 2)."""
+    """Return first and second time derivatives of all constraints at one end of an arc, shape (h, 2)."""
     instance, n = solution.instance, len(solution.x)
     t, z = np.array([piece.times[place]]), piece.z[:, [place]]
     u = control(instance, FREE, t, z)
@@ -237,7 +239,7 @@ def _rates(solution: Solution, piece: Piece, place: int) -> Array:
 
 
 def _multipliers(solution: Solution, again: Replay) -> list[Array]:
-    """eta along each arc of each constraint on states alone that is active."""
+    """Return the multipliers eta along each arc, one array for each active constraint on states alone."""
     found = list[Array]()
     for piece in again.pieces:
         states = [place for place, k in enumerate(piece.active) if not holds_control(solution.instance, k)]
@@ -247,12 +249,13 @@ def _multipliers(solution: Solution, again: Replay) -> list[Array]:
 
 
 def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
-    """Least of what makes each constraint active that holds a control, on its arcs, relative to its size.
+    """Return the minimum, on active arcs, of the quantity that makes each control-dependent constraint active.
 
     Parameters
     ----------
     tent
-        Whether it is related to the share of the arc since its entry, and until its exit, where it vanishes.
+        Whether this quantity is divided by the fraction of the arc since the entry or until the exit, where it
+        vanishes.
     """
     instance, found, sizes = solution.instance, list[float](), _sizes(solution, again)
     for which in {k for piece in again.pieces for k in piece.active if holds_control(instance, k)}:
@@ -264,13 +267,13 @@ def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
 
 
 def _runs(pieces: list[Piece], which: int) -> list[list[Piece]]:
-    """Arcs that follow each other while a constraint stays active."""
+    """Return groups of consecutive arcs on which a constraint stays active."""
     together = groupby(pieces, key=lambda piece: which in piece.active)
     return [list(group) for active, group in together if active]
 
 
 def _least_push(solution: Solution, t: Array, push: Array, tent: bool) -> float:
-    """The least of it while a constraint is active."""
+    """Return the minimum over an active interval of the quantity ``push`` that makes a constraint active."""
     (begin, end), (a, b) = solution.times[[0, -1]], t[[0, -1]]
     if tent:
         share = np.minimum(t - a if a > begin else np.inf, b - t if b < end else np.inf) / (b - a)
@@ -279,23 +282,25 @@ def _least_push(solution: Solution, t: Array, push: Array, tent: bool) -> float:
 
 
 def _negative(solution: Solution, again: Replay) -> float:
-    """Largest negative multiplier along an arc or at a junction, relative to the largest there is.
+    """Return the largest negative multiplier along an arc or at a junction, relative to the largest multiplier.
 
-    Of constraints that hold a control it is what makes them active, relative to their size.
+    For constraints that involve the control, the quantity that makes them active takes the place of the multiplier,
+    relative to the constraint's magnitude.
     """
     least, most = _least_multiplier(solution, again, strict=False)
     return max(0.0, float(-least / most), -min(_pushed(solution, again, tent=False), default=0.0))
 
 
 def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[float, float]:
-    """The least multiplier, those at junctions over the duration, and the largest magnitude of any.
+    """Return the smallest multiplier and the largest magnitude of any; at junctions, multipliers over the duration.
 
-    Of constraints on states alone; infinite and one where none of these is ever active.
+    Only constraints on states alone count; infinite and 1 if none of them is ever active.
 
     Parameters
     ----------
     strict
-        Whether multipliers may be left out that need not be positive: where others begin or end to be active.
+        Whether to leave out multipliers at junctions that need not be positive because another constraint becomes
+        active or inactive there.
     """
     lasting, spec = float(solution.times[-1] - solution.times[0]), solution.instance.model.spec.path_constraints
     jumps = list[float]()
@@ -310,7 +315,7 @@ def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[
 
 
 def _drift(solution: Solution, again: Replay) -> float | None:
-    """Largest change of H along the flow, relative to its terms; ``None`` where time is explicit."""
+    """Return the largest change of H along the flow, relative to its terms; ``None`` if time is explicit."""
     instance, n, t = solution.instance, len(solution.x), solution.times
     parts = [control(instance, one.active, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
     u, flow = np.concatenate(parts, axis=1), Flow(t, again.z[:n], again.z[n:], again.cost)

@@ -1,4 +1,4 @@
-"""Points on the way: whether each is passed, and whether passing it earlier or later changes the cost."""
+"""Checks of waypoints: whether each is passed, and whether passing it earlier or later changes the cost."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from satsym.solvers.constrained.equations import hamiltonian
 from satsym.solvers.constrained.structure import within
 
 MISSED, STATIONARY = 1e-9, 1e-8
-"""Most that a point may be missed by, relative to the terms of its conditions, and largest derivative of the cost by
-its time, relative to the terms of H."""
+"""Largest admissible distance from a waypoint, relative to the terms of its conditions, and largest admissible
+derivative of the cost with respect to the time of the waypoint, relative to the terms of H."""
 
 
 def places(solution: Solution) -> list[int]:
-    """The arcs after which points on the way are passed, by their numbers."""
+    """Return the indices of the arcs that end at a waypoint."""
     return [k for k, group in enumerate(within(solution)) if any(one.kind == "interior" for one in group)]
 
 
 def passing(solution: Solution, again: Replay) -> list[Check]:
-    """What is checked of points on the way; nothing where there are none."""
+    """Return checks of the waypoints; an empty list if there are none."""
     which, found = conditions(solution.instance), places(solution)
     if not which:
         return []
@@ -40,7 +40,7 @@ def passing(solution: Solution, again: Replay) -> list[Check]:
 
 
 def drifting(solution: Solution, again: Replay) -> bool:
-    """Whether points on the way move, so that H jumps where they are passed."""
+    """Return whether waypoints move with time, so that H jumps where they are passed."""
     which = conditions(solution.instance)
     return any(_drift(solution, again, k, own).any() for k, own in zip(places(solution), which, strict=False))
 
@@ -51,7 +51,7 @@ def _drift(solution: Solution, again: Replay, arc: int, which: range) -> Array:
 
 
 def _met(solution: Solution, again: Replay, arc: int, which: range) -> tuple[float, float]:
-    """By how much a point is missed after an arc, and the derivative of the cost by its time, both relative."""
+    """Return the distance from a waypoint after an arc and the derivative of the cost by its time, both relative."""
     instance, n = solution.instance, len(solution.x)
     left, right = again.pieces[arc], again.pieces[arc + 1]
     t, z = left.times[-1:], left.z[:, -1:]

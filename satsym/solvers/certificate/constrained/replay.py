@@ -1,6 +1,7 @@
-"""An extremal with boundary arcs, integrated again from its initial costates, its junctions and its jumps alone.
+"""Repeated integration of an extremal with boundary arcs from its initial costates, junction times and jumps.
 
-By extrapolation, of which the solver's collocation knows nothing; on boundaries with the multiplier as it was derived.
+The integration uses extrapolation, independently of the solver's collocation; on boundaries it uses the derived
+expression of the multiplier.
 """
 
 from __future__ import annotations
@@ -24,71 +25,74 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
 
 INDEPENDENT = 1e-9
-"""Least share of a constraint's gradient that neither given states nor terminal constraints make up."""
+"""Minimum part of a constraint's gradient, relative, that is independent of given states and terminal constraints.
+Below it the constraint has no multiplier at the final time."""
 
 SEGMENTS = 32
-"""Into which a motion is cut at nodes, besides where arcs meet, that is integrated part by part."""
+"""Number of segments into which a motion is cut at nodes, as well as at junctions, for an integration part by part."""
 
 BETWEEN = 4
-"""Places looked at between two nodes, the second of these included."""
+"""Number of points evaluated between two neighbouring nodes, the second node included."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """An arc of the replay."""
+    """One arc of the repeated integration."""
 
     active: Active
-    """On whose boundaries it runs."""
+    """Constraints that are active on the arc."""
     nodes: slice
-    """The solution's nodes on it."""
+    """Indices of the solution's nodes on the arc."""
     z: Array
-    """States and costates at these, shape (2n, N)."""
+    """States and costates at these nodes, shape (2n, N)."""
     times: Array
     dense: Array
-    """Places between nodes, shape (M,), and values there, shape (2n, M)."""
+    """Times at and between the nodes, shape (M,), and states and costates there, shape (2n, M)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """The extremal again."""
+    """The extremal as integrated again."""
 
     pieces: list[Piece]
     jumps: list[dict[int, float]]
-    """Multipliers where arcs meet, by constraint."""
+    """Multipliers at each junction of arcs, by the index of the constraint."""
     pressed: dict[int, float]
-    """Multipliers at the end, of constraints that may push there."""
+    """Multipliers at the final time, by the index of the constraint that is active there."""
     off_gradient: float
-    """Largest part of a jump that no multiples of constraints' gradients make up, relative to the costates."""
+    """Largest part of a jump of the costates that is no linear combination of constraint gradients, relative to the
+    costates."""
     z: Array
-    """At the solution's nodes, shape (2n, N)."""
+    """States and costates at the solution's nodes, shape (2n, N)."""
     cost: float
-    """What the whole motion costs, its end included."""
+    """Total cost, terminal cost included."""
     end: Array
-    """States and costates at the end, the latter after a jump there."""
+    """States and costates at the final time, the costates after a jump there."""
     gap: float = 0.0
-    """The most that a segment misses of the node at which the next one begins, relative to sizes."""
+    """Largest distance between the end of a segment and the node at which the next one begins, relative to the typical
+    magnitudes."""
 
     def meets_a_boundary(self, solution: Solution) -> bool:
-        """Whether any constraint is active somewhere, if only at a moment; points on the way are no constraints."""
+        """Return whether a path constraint is active on an arc or at a time; conditions at waypoints do not count."""
         points = {k for point in conditions(solution.instance) for k in point}
         return (
             bool(self.pressed) or any(jump.keys() - points for jump in self.jumps) or any(p.active for p in self.pieces)
         )
 
     def flow(self, solution: Solution) -> Flow:
-        """As conditions at the end have it."""
+        """Return states and costates as a flow, with the costates at the final time after a jump there."""
         z, n = np.column_stack([self.z[:, :-1], self.end]), len(solution.x)
         return Flow(solution.times, z[:n], z[n:], self.cost)
 
 
 def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite, or events do not fit the nodes.
+    """Integrate an extremal again; ``None`` if the motion is not finite or its events do not match its nodes.
 
     Parameters
     ----------
     in_segments
-        Whether arcs, and parts of these, begin at the solution's nodes instead of where the ones before end: rounding
-        does not grow along the whole motion then.
+        Whether arcs, and segments of arcs, begin at the solution's nodes instead of at the ends of the preceding ones,
+        so that rounding errors do not grow along the whole motion.
     """
     n, arcs = len(solution.x), stated_arcs(solution)
     breaks = np.flatnonzero(np.diff(solution.times) == 0.0)
@@ -125,7 +129,7 @@ def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
 
 
 def _parts(nodes: slice, times: Array) -> list[slice]:
-    """An arc cut at nodes, each part with the node at which it ends."""
+    """Divide an arc at nodes into parts; each part includes the node at which it ends."""
     whole, lasting = times[-1] - times[0], times[nodes.stop - 1] - times[nodes.start]
     count = min(max(1, round(SEGMENTS * lasting / whole)), nodes.stop - nodes.start - 1)
     edges = np.linspace(nodes.start, nodes.stop - 1, count + 1).round().astype(int).tolist()
@@ -133,7 +137,7 @@ def _parts(nodes: slice, times: Array) -> list[slice]:
 
 
 def _joined(parts: list[Piece], nodes: slice) -> Piece:
-    """Parts as one arc, which has where each ends, and not where the next one begins."""
+    """Join parts of an arc; where two parts meet, the end of the earlier one is kept."""
     first, *others = parts
     z = np.concatenate([first.z, *(part.z[:, 1:] for part in others)], axis=1)
     times = np.concatenate([first.times, *(part.times[1:] for part in others)])
@@ -142,7 +146,10 @@ def _joined(parts: list[Piece], nodes: slice) -> Piece:
 
 
 def jumping(solution: Solution, junction: int, before: Active, after: Active) -> list[int]:
-    """Along whose gradients costates may jump where arcs meet: those of order two on whose boundaries it is."""
+    """Return the indices of the constraints along whose gradients costates may jump at a junction of two arcs.
+
+    These are constraints of order two or more that are active there, and conditions of a waypoint that is passed there.
+    """
     spec = solution.instance.model.spec.path_constraints
     names, names_of = ([one.name for one in ones] for ones in (spec, solution.instance.model.spec.interior))
     met = within(solution)[junction]
@@ -154,7 +161,7 @@ def jumping(solution: Solution, junction: int, before: Active, after: Active) ->
 
 
 def _jump(solution: Solution, along: list[int], node: int, sizes: Array) -> tuple[dict[int, float], float]:
-    """The multipliers of the solution's jump, and what of it they leave."""
+    """Return the multipliers that best fit the jump of the solution's costates, and the relative remainder."""
     n, place = len(solution.x), slice(node, node + 1)
     change = solution.lam[:, node] - solution.lam[:, node + 1]
     here = solution.times[place], solution.x[:, place], solution.u[:, place]
@@ -165,17 +172,17 @@ def _jump(solution: Solution, along: list[int], node: int, sizes: Array) -> tupl
 
 
 def _push(solution: Solution, multipliers: dict[int, float], time: float, value: Array) -> Array:
-    """By how much multipliers at one time change the costates, shape (n,)."""
+    """Return the change of the costates, shape (n,), caused by given multipliers at one time."""
     n, t = len(solution.x), np.array([time])
     parts = [zeta * gradient(solution.instance, k, t, value[:n, None])[:, 0] for k, zeta in multipliers.items()]
     return np.asarray(sum(parts, np.zeros(n)))
 
 
 def _pressed(solution: Solution, may: Active, value: Array) -> dict[int, float]:
-    """The multipliers with which constraints push at the end, by what transversality lacks.
+    """Return multipliers of constraints active at the final time, by the residual of the transversality condition.
 
-    Multipliers of terminal constraints make up what they can; where they, or given states, could make up all that a
-    constraint brings about, it has none.
+    Multipliers of terminal constraints take up as much of the residual as they can. A constraint whose effect terminal
+    constraints or given states could produce as well has no multiplier here.
     """
     instance, n, t = solution.instance, len(solution.x), float(solution.times[-1])
     final, free, x = final_argument(instance), ~fixed_states(instance), tuple(value[:n].tolist())
@@ -204,7 +211,7 @@ def _pressed(solution: Solution, may: Active, value: Array) -> dict[int, float]:
 def _piece(
     instance: Instance, active: Active, nodes: Array, start: Array, sizes: Array, place: slice
 ) -> tuple[Piece, float]:
-    """Integrate an arc, and leap from its steps to the nodes and between them."""
+    """Integrate over an arc, and return its values at and between the nodes, and its running cost."""
     n, model, p = len(instance.initial), instance.model, instance.parameters
 
     def rates(t: Array, y: Array) -> Array:
@@ -226,5 +233,5 @@ def _piece(
 
 
 def _single(rates: Callable[[Array, Array], Array]) -> Callable[[float, Array], Array]:
-    """Rates at one time."""
+    """Return a function of one time and one vector from rates for arrays of times."""
     return lambda t, y: rates(np.array([t]), y[:, None])[:, 0]

@@ -1,12 +1,12 @@
-"""The second variation with the active arcs held: whether it is positive for all variations that keep to these.
+"""The second variation with fixed active arcs: whether it is positive for all variations that keep these arcs.
 
-Variations keep to given ends, and to g_x dx = 0 along arcs on boundaries of constraints on states and at touch points;
-while a constraint is active that holds a control, that control is the one which keeps to it. To the form along the way
-a touch point of order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, No-gap second-order
-optimality conditions, Mathematical Programming 117, 2009): where it moves with the variation, the constraint is harder
-to keep. Boundary arcs and junctions, the end among them where a constraint pushes there, add the curvature of g times
-its multiplier. Between points on the way the motion is stretched, and as a whole up to a final time that is free, which
-holds where it ends on no boundary; a point adds the curvature of its conditions times their multipliers.
+Variations keep the given ends, and g_x dx = 0 along boundary arcs of constraints on states and at touch points; while a
+constraint that involves the control is active, the control follows from it. A touch point of order two adds - zeta
+(d/dt g_x dx)^2 / g'' with g'' < 0 to the quadratic form (Bonnans and Hermant, No-gap second-order optimality
+conditions, Mathematical Programming 117, 2009), since its time moves with the variation. Boundary arcs and junctions,
+also one at the final time, add the curvature of g times its multiplier. Time is stretched between waypoints and, if the
+final time is free and no constraint is active there, over the whole motion; a waypoint adds the curvature of its
+conditions times their multipliers.
 """
 
 from __future__ import annotations
@@ -31,14 +31,17 @@ from satsym.solvers.constrained.equations import hamiltonian
 from satsym.solvers.constrained.structure import FREE, within
 
 MESH, FEWEST = 160, 4
-"""Intervals on which changes of the controls are constant, and how many an arc has at least."""
+"""Number of intervals on which variations of the controls are constant, and minimum number of intervals of an arc."""
 
 DIFFERENCE = 1e-5
-"""Share of an arc by which a derivative by time is differenced once more."""
+"""Step of the finite difference with respect to time, as a fraction of the length of an arc."""
 
 
 def curvature(solution: Solution, again: Replay) -> float:
-    """Least eigenvalue of the form over that of the control alone, and of a time that varies by the duration."""
+    """Return the smallest eigenvalue of the second variation relative to the form of the control cost alone.
+
+    The latter also has a unit term for a variation of the final time by the duration.
+    """
     state, cost = scaled_units(solution)
     passed, arcs, groups = places(solution), list[Arc](), list[int]()
     for k, piece in enumerate(again.pieces):
@@ -58,7 +61,7 @@ def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], st
     kept = {k: push for k, push in eta.items() if k not in held}
 
     def rates(v: NDArray[Any]) -> NDArray[Any]:
-        """Rates of states and costates where multipliers of constraints on states are as they are."""
+        """Return rates of states and costates with fixed multipliers of the constraints on states."""
         found = np.array(field(instance, held, v[-1], v[:-1]))
         for k, push in kept.items():
             found[n:] -= push * gradient(instance, k, v[-1], v[:n])
@@ -83,13 +86,16 @@ def _arc(instance: Instance, piece: Piece, at_end: list[tuple[Array, Array]], st
 
 
 def _by_time(instance: Instance, piece: Piece, t: Array, z: Array) -> Array:
-    """H by explicit time along an arc, shape (N,)."""
+    """Return the partial derivative of H with respect to explicit time along an arc, shape (N,)."""
     ahead: NDArray[Any] = t + 1j * COMPLEX_STEP
     return np.broadcast_to(np.imag(hamiltonian(instance, piece.active, ahead, z)) / COMPLEX_STEP, t.shape)
 
 
 def _met_at_end(solution: Solution, again: Replay, arc: int) -> list[tuple[Array, Array]]:
-    """Rows that vanish where an arc ends, and forms there, in states and time; at the very end of what pushes there."""
+    """Return the linear conditions and quadratic forms, in states and time, at the end of an arc.
+
+    At the final time these come from the constraints that are active there.
+    """
     instance, spec = solution.instance, solution.instance.model.spec.path_constraints
     names, piece, n = [one.name for one in spec], again.pieces[arc], len(solution.x)
     if arc == len(again.pieces) - 1:
@@ -116,7 +122,7 @@ def _met_at_end(solution: Solution, again: Replay, arc: int) -> list[tuple[Array
 
 
 def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, touches: bool) -> tuple[Array, Array]:
-    """The junction of a constraint at a time, with states and costates before it: g_x, and the form that it adds."""
+    """Return g_x at the junction of a constraint, and the quadratic form that the junction adds."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, found = z[:n], np.zeros((n + 1, n + 1))
     u = control(instance, FREE, t, z)
@@ -132,7 +138,7 @@ def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, t
 
 
 def _slopes(function: Callable[[Any], NDArray[Any]], at: Array) -> Array:
-    """Derivatives by every component, shape (rows, d, N)."""
+    """Return derivatives of a function with respect to every component, shape (rows, d, N), by complex steps."""
     columns = []
     for j in range(len(at)):
         moved = at.astype(complex)

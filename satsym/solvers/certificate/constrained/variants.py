@@ -1,4 +1,7 @@
-"""Competitors whose structure is near that of the answer: without one of its contacts, or with another in its place."""
+"""Competitors with a sequence of boundary arcs similar to that of the answer: one contact is removed or replaced.
+
+A contact is a boundary arc or a touch point of a path constraint.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,14 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
 SHORT_ARC = 0.02
-"""Share of the duration by which an arc begins before, and ends after, the touch point that it replaces."""
+"""Length of an arc that replaces a touch point, before it and after it together, as a fraction of the duration."""
 
 WORK = 20_000
-"""Columns that may be linearised for one of them."""
+"""Maximum number of columns that may be linearised for one variant."""
 
 
 def near(solution: Solution, deadline: float) -> tuple[int, list[float], bool]:
-    """How many variants there are, costs of those that are admissible extremals, and whether time was up before all."""
+    """Solve the variants; return their number, the costs of the admissible extremals, and whether time was up."""
     costs, count = list[float](), 0
     for structure in _variants(solution):
         limits = Limits(200, deadline, work=WORK)
@@ -36,7 +39,7 @@ def near(solution: Solution, deadline: float) -> tuple[int, list[float], bool]:
 
 
 def _extremal(solution: Solution, structure: Structure, limits: Limits) -> float | None:
-    """The cost of the admissible extremal of a structure near a solution; ``None`` without one."""
+    """Return the cost of the admissible extremal with a given structure near a solution, or ``None``."""
     nothing = np.zeros(len(solution.instance.model.spec.multipliers))
     known = solution.times, np.concatenate([solution.x, solution.lam]), nothing
     found = solved(begun(solution.instance, structure, known, float(solution.times[-1])), limits)
@@ -44,7 +47,7 @@ def _extremal(solution: Solution, structure: Structure, limits: Limits) -> float
 
 
 def contacts(solution: Solution) -> list[Contact]:
-    """What the events of a solution say."""
+    """Return the contacts with path constraints, from the events of a solution."""
     names, open_since = [one.name for one in solution.instance.model.spec.path_constraints], dict[int, float]()
     begin, end = float(solution.times[0]), float(solution.times[-1])
     found = list[Contact]()
@@ -62,7 +65,11 @@ def contacts(solution: Solution) -> list[Contact]:
 
 
 def _variants(solution: Solution) -> Iterator[Structure]:
-    """Without a contact, a touch in place of an arc and the other way, an arc in two, and two contacts as one."""
+    """Yield structures near that of a solution.
+
+    One contact is removed, a touch point replaced by an arc or an arc by a touch point, an arc divided, or two contacts
+    are joined.
+    """
     known, spec = list(ordered(contacts(solution)).contacts), solution.instance.model.spec.path_constraints
     lasting = float(solution.times[-1] - solution.times[0])
     for k, one in enumerate(known):

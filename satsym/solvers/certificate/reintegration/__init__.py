@@ -1,1 +1,1 @@
-"""A solution integrated anew: its flow from the start, or segment by segment where that grows, and its defects."""
+"""Repeated integration of a solution, from the initial state or, where errors grow, segment by segment; its defects."""

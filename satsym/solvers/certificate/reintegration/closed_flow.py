@@ -1,8 +1,9 @@
-"""The flow from the initial costates out of motions from all stations at once, which are many times quicker on arrays.
+"""The flow from the initial costates, computed from simultaneous integrations from all stations.
 
-The stations of a solution hardly miss that flow. By how much is known to first order from where the motion from each
-ends and how that follows its beginning; moved by so much they are integrated from again where that was not little. What
-comes out has the errors of these integrations and no others, wherever the stations were.
+Arrays make this many times faster than one integration. The stations of a solution deviate only slightly from the flow.
+To first order the deviation follows from the end of each integration and its derivative; unless it is negligible, the
+stations are corrected and integrated from again. The result has the errors of these integrations only, whatever the
+initial stations were.
 """
 
 from __future__ import annotations
@@ -20,22 +21,22 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leaps
 
 FEWEST = 5
-"""Columns of the extrapolation table, at least."""
+"""Minimum number of columns of the extrapolation table."""
 
 SETTLED_CORRECTION = 1e-11
-"""Relative correction of stations whose square is nothing, and that changes the cost by nothing that is checked."""
+"""Relative correction of the stations below which iteration stops, since its square is negligible."""
 
 ROUNDS = 3
-"""Corrections; where more would be needed the flow is followed step by step."""
+"""Maximum number of corrections. If more would be needed, the flow is integrated step by step instead."""
 
 
 def closed_flow(solution: Solution, along: Segments) -> Flow | None:
-    """The flow at all stations; ``None`` where steps between these are too long, or corrections do not settle.
+    """Return the flow at all stations; ``None`` if steps between them are too long or corrections do not converge.
 
     Parameters
     ----------
     along
-        Stations, and how motions between them follow their beginnings.
+        Stations, and derivatives of the motions between them with respect to their initial values.
     """
     n, times, widths = len(solution.x), along.times, np.diff(along.times)
     last = np.concatenate([solution.x[:, -1:], solution.lam[:, -1:]])
@@ -63,19 +64,19 @@ def closed_flow(solution: Solution, along: Segments) -> Flow | None:
 
 
 def _moved(along: Segments, gaps: Array) -> Array:
-    """By how much stations but the first move for the motion from each to end at the next, shape (2n, K-1)."""
+    """Return corrections of all stations but the first that close the gaps to first order, shape (2n, K-1)."""
     return carried(along.transition, (gaps / along.scale[:, None]).T).T * along.scale[:, None]
 
 
 def carried(transition: Array, gaps: Array) -> Array:
-    """Sums of gaps up to each station but the first, each carried on by the steps after it, shape (K, s).
+    """Return sums of gaps up to each station but the first, each propagated by the later steps, shape (K, s).
 
     Parameters
     ----------
     transition
-        From each station to the next, shape (K, s, s).
+        Transition matrices from each station to the next, shape (K, s, s).
     gaps
-        At the ends of the steps, shape (K, s).
+        Gaps at the ends of the steps, shape (K, s).
     """
     count, size = transition.shape[:2]
     band = np.zeros((count, size, 2 * size))  # below the diagonal, column by column, as LAPACK has it

@@ -18,33 +18,35 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
 
 TOLERANCE = 1e-13
-"""Error of a step, relative to the size of each component."""
+"""Error tolerance of a step, relative to the magnitude of each component."""
 
 FINEST = 4.0 * np.finfo(float).eps
-"""Share of the terms of a rate below which a step cannot tell what they add up to."""
+"""Rounding error of a rate, relative to the terms that it is the sum of."""
 
 ROUGHLY = 1e-9
-"""Error of a step where only the size of what is found matters."""
+"""Error tolerance of a step, relative, if only an order of magnitude is needed."""
 
 IDLE_STEPS, IDLE_ERROR = (100, 200), 1e-4
-"""RK4 steps of the uncontrolled motion, and what the fewer may change of its distance from the end of the solution,
-relative to that: it tells a size."""
+"""Two numbers of RK4 steps for the uncontrolled motion, and the largest change between their final states, relative to
+the distance from the solution's final state, at which the result is accurate enough for an order of magnitude."""
 
 NEGLIGIBLE = 1e-3
-"""Share of its unit, or of the largest product with its partner, at which something small counts."""
+"""Minimum magnitude that is attributed to a small state, relative to its unit, and to a small costate, relative to the
+largest product of state and costate."""
 
 ROUNDED = 1e-13
-"""Share of its unit up to which a costate may be made of rounding."""
+"""Magnitude of a costate, relative to its unit, below which it may consist of rounding."""
 
 SMALL_COSTATE, FAINT_COSTATE = 1e-4, 1e-6
-"""Share of its unit at which a smaller costate counts: states are rounded, and with them what a costate must be at
-the end; the flow from the initial costates is not, but that it depends on the states."""
+"""Minimum magnitudes that are attributed to a small costate, relative to its unit: in conditions at the final time,
+where rounding of the states matters, and along the flow, where it matters less."""
 
 BREAK_WIDTH = 1e-15
-"""Share of the time between the last instant before a break of a schedule and the first one after it, at most."""
+"""Largest distance, relative to the time, between the last instant before a break of a schedule and the first after
+it."""
 
 STATIONS = 64
-"""Times at which the flow is compared with the solver's trajectory."""
+"""Number of intervals at whose ends the flow is compared with the solver's trajectory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +54,16 @@ class Flow:
     """States and costates along the canonical equations."""
 
     times: Array
-    """Stations, shape (K,), switching times among them."""
+    """Times of the stations, shape (K,), switching times included."""
     x: Array
     lam: Array
-    """States and costates there, shapes (n, K)."""
+    """States and costates at the stations, shapes (n, K)."""
     cost: float
-    """What the whole motion costs, its end included."""
+    """Total cost of the motion, terminal cost included."""
 
 
 def flow(solution: Solution) -> Flow | None:
-    """Integrate from the initial state and costates; ``None`` where the flow is not finite."""
+    """Integrate from the initial state and costates; ``None`` if the flow is not finite."""
     instance, model = solution.instance, solution.instance.model
     n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
@@ -101,7 +103,11 @@ def flow(solution: Solution) -> Flow | None:
 
 
 def _parts(solution: Solution, stations: Array) -> list[tuple[Array | None, Array]]:
-    """Stations up to and from the nodes beside each jump, and between these the control near which H is held least."""
+    """Return stations grouped at jumps of the control, each group with the control that is held near a jump.
+
+    Between the nodes on both sides of a jump the control stays near its value before and after the jump; otherwise the
+    control law determines it (``None``).
+    """
     found: list[tuple[Array | None, Array]] = []
     for one in (one for one in passages(solution) if one.located and not one.last):
         before, after = solution.times[one.node : one.node + 2]
@@ -113,7 +119,7 @@ def _parts(solution: Solution, stations: Array) -> list[tuple[Array | None, Arra
 
 
 def undriven(solution: Solution) -> Array | None:
-    """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
+    """Return the final state of the uncontrolled motion, shape (n,); ``None`` if it cannot be computed."""
     instance, model = solution.instance, solution.instance.model
     none, p, size = (0.0,) * len(model.spec.controls), instance.parameters, typical(solution)[0]
     start, tf = solution.times[[0, -1]]
@@ -136,7 +142,7 @@ def undriven(solution: Solution) -> Array | None:
 
 
 def costing(solution: Solution) -> Callable[[Array, Array], Array]:
-    """The canonical rates with that of the cost, functions of times (M,) and values (2n + 1, M)."""
+    """Return a function that gives canonical rates and running cost from times (M,) and values (2n + 1, M)."""
     instance, model, n, m = solution.instance, solution.instance.model, len(solution.x), len(solution.u)
     p, bounds = instance.parameters, instance.control_set.arguments
 
@@ -152,14 +158,14 @@ def costing(solution: Solution) -> Callable[[Array, Array], Array]:
 
 
 def sizes(solution: Solution) -> Array:
-    """Sizes to which errors of steps are held, shape (2n,)."""
+    """Return the magnitudes that error tolerances of steps are relative to, shape (2n,)."""
     return np.maximum(np.concatenate(typical(solution, FAINT_COSTATE)), _resolved(solution) / STATIONS)
 
 
 def _resolved(solution: Solution) -> Array:
-    """Sizes below which errors would be held to less than the rates are rounded by over the whole time, shape (2n,).
+    """Return magnitudes below which a tolerance would be smaller than the rounding of the rates, shape (2n,).
 
-    Steps would shrink for ever in vain: a rate may be a small difference of large terms.
+    A rate may be a small difference of large terms; with a smaller tolerance steps would shrink without limit.
     """
     instance, model = solution.instance, solution.instance.model
     z = np.abs(np.concatenate([solution.x, solution.lam]))
@@ -173,7 +179,7 @@ def _resolved(solution: Solution) -> Array:
 
 @lru_cache(maxsize=256)
 def unit_sizes(solution: Solution) -> Array:
-    """Units of states and costates, those of the scaled problem, shape (2n,)."""
+    """Return the units of states and costates in the scaled problem, shape (2n,)."""
     found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
     found.flags.writeable = False  # what several conditions ask for is computed once
     return found
@@ -181,31 +187,30 @@ def unit_sizes(solution: Solution) -> Array:
 
 @lru_cache(maxsize=256)
 def _largest(solution: Solution) -> tuple[Array, Array]:
-    """Magnitudes of states and costates along the way, shapes (n,)."""
+    """Return the largest magnitudes of states and costates along the motion, shapes (n,)."""
     state, costate = (np.abs(rows).max(axis=1) for rows in (solution.x, solution.lam))
     state.flags.writeable = costate.flags.writeable = False
     return state, costate
 
 
 def products(solution: Solution) -> float:
-    """The sum of the products of states and costates at their largest: what a share of the states is worth."""
+    """Return the sum of the products of the largest states and costates, a scale of the cost."""
     state, costate = typical(solution, ROUNDED)
     return float(state @ costate)
 
 
 def typical(solution: Solution, faint: float = SMALL_COSTATE) -> tuple[Array, Array]:
-    """Sizes to which errors of states and costates are held, shapes (n,).
+    """Return the magnitudes that errors of states and costates are compared with, shapes (n,).
 
-    Each its largest magnitude along the way, but what is far below its unit counts as a share of that: states are
-    rounded, and what they move is no better. A costate also counts as a share of what the largest product of state
-    and costate makes of it.
+    Each is the largest magnitude along the motion, but at least a fraction of its unit, since states are rounded. A
+    costate also has at least the magnitude that the largest product of state and costate implies.
 
     Parameters
     ----------
     solution
-        Whose.
+        The solution.
     faint
-        The share of their unit at which smaller costates count.
+        Minimum magnitude of a costate, as a fraction of its unit.
     """
     n, unit = len(solution.x), unit_sizes(solution)
     largest, costate = _largest(solution)

@@ -1,7 +1,7 @@
-"""How far the canonical equations, begun at each node of a solution, end from the next one.
+"""Distance between the canonical flow from each node of a solution and the next node.
 
-The flow from the initial costates says nothing of nodes that are no stations of it, so that a single wrong one would go
-unseen; from node to node each of them is the end of one short integration and the beginning of another.
+The flow from the initial costates does not show an error at a node that is no station of the flow. From node to node,
+each node is the end of one short integration and the beginning of another, so that a single wrong node is found.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, typical
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap, leap_and_error
 
 FINE = 1e-10
-"""Error of an integration, relative, that shows nothing in a defect."""
+"""Relative error of an integration that is negligible in a defect. Larger errors make the integration be refined."""
 
 EASY = 3
-"""Columns of the extrapolation table that are enough between most nodes."""
+"""Number of columns of the extrapolation table for the first attempt between nodes."""
 
 MOST_PARTS = 256
-"""Into which what lies between two nodes is taken where that does not suffice."""
+"""Maximum number of parts into which the interval between two nodes is divided."""
 
 
 def node_defect(solution: Solution) -> float:
-    """The largest miss of the next node, relative to the sizes of states and costates; infinite where it is not finite.
+    """Return the largest relative distance from the next node; infinite if an integration is not finite.
 
-    Where a control switches between two nodes, the motion begins anew there.
+    If a control switches between two nodes, the integration restarts at the switching time.
     """
     instance, n, times = solution.instance, len(solution.x), solution.times
     z, sizes = np.concatenate([solution.x, solution.lam]), np.concatenate(typical(solution, FAINT_COSTATE))[:, None]

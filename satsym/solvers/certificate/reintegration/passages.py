@@ -1,4 +1,4 @@
-"""Jumps of the control along a solution, looked for again in its law, and where they lie between its nodes."""
+"""Jumps of the control along a solution, found again from the control law, and their positions between nodes."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from satsym.solution import Solution
 from satsym.solvers.control.jumps import Jump, Saltation, jumps, saltation
 
 LEFT = 1e-6
-"""Share of the largest control by which it jumps."""
+"""Smallest change of the control, relative to its largest magnitude, that counts as a jump."""
 
 CLOSE_NODES = 1e-8
-"""Share of the duration within which the nodes on both sides of a jump that is located lie."""
+"""Largest distance, relative to the duration, of the nodes on both sides of a jump whose time counts as known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,14 +24,15 @@ class Passage:
 
     jump: Jump
     node: int
-    """The one before it."""
+    """Index of the node before the jump."""
     located: bool
-    """Whether both are so close that it is known when the control jumps, or it does so at the very end."""
+    """Whether the nodes on both sides are so close that the time of the jump is known, or the jump is at the final
+    time."""
     last: bool
-    """Whether nothing comes after it."""
+    """Whether the jump is at the final time."""
 
     def saltation(self, solution: Solution, unit: Array) -> Saltation:
-        """How neighbouring extremals pass it, in units of states and costates whose products are all the same."""
+        """Return the saltation matrix, in units whose products of state and costate are all the same."""
         n, pair = len(solution.x), slice(self.node, self.node + 2)
         z = np.concatenate([solution.x, solution.lam])[:, pair]
         share = (self.jump.time - solution.times[self.node]) / float(np.diff(solution.times[pair])[0])
@@ -41,7 +42,10 @@ class Passage:
 
 @lru_cache(maxsize=256)
 def passages(solution: Solution) -> tuple[Passage, ...]:
-    """All jumps of the control while states and costates go on; none where every control has one minimiser of H."""
+    """Return all jumps of the control at continuous states and costates.
+
+    The tuple is empty if H has a single minimiser for every control.
+    """
     instance, model = solution.instance, solution.instance.model
     if not model.spec.stationary:
         return ()

@@ -1,4 +1,4 @@
-"""The canonical equations, linearised from node to node of a solution: how neighbouring extremals go on."""
+"""The canonical equations linearised from node to node of a solution: the motion of neighbouring extremals."""
 
 from __future__ import annotations
 
@@ -18,56 +18,59 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap_varied
 
 FEWEST = 64
-"""Segments."""
+"""Minimum number of segments."""
 
 MOST_STEPS = 20_000
-"""Steps: neighbouring extremals that turn about each other more often are not followed."""
+"""Maximum number of steps. If neighbouring extremals rotate so often that more would be needed, they are not
+followed."""
 
 TURN = np.pi / 2.0
-"""Largest turn within a step of the sum of all phases, see :mod:`satsym.solvers.certificate.jacobi`; less than pi, so
-that it is known from where it begins and ends."""
+"""Largest change of the sum of all phases within a step, in rad, see :mod:`satsym.solvers.certificate.jacobi`. It is
+less than pi, so that the values at both ends determine the change."""
 
 FRACTION = 0.75
-"""Share of the largest turn that segments between nodes are to have."""
+"""Change of the phases between the beginnings of segments, as a fraction of the largest change within a step."""
 
 COLUMNS, ACCURATE = (3, 5), 3e-7
-"""How many the extrapolation table has for transitions: the fewer where they differ by no more than that from those of
-the next lower order, whose error is hundreds of times their own; but not where bounds make corners, of which such
-differences say little. Errors of phases matter only where they are a full turn."""
+"""Numbers of columns of the extrapolation table for transition matrices: the smaller number if its difference from the
+next lower order, which is hundreds of times its error, is within the tolerance ``ACCURATE``. With bounds, which make
+corners, the larger number is always used. Errors of phases matter only near a full turn."""
 
 PLACES = 2048
-"""At which derivatives are known at a time: few enough to stay in memory that is at hand."""
+"""Number of points at which derivatives are held in memory at the same time."""
 
 LOST_DIGITS = 1e16
-"""Growth at which nothing is left of a number's digits."""
+"""Growth of errors at which no correct digit is left."""
 
 SWEEPS, STEADY = 12, 1e-2
-"""Through all units, at most; and the relative change of units in one below which there is no other."""
+"""Maximum number of passes through all units, and the relative change of the units in a pass below which iteration
+stops."""
 
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Steps from node to node of a solution, and how their ends follow their beginnings."""
+    """Steps from node to node of a solution, and the derivatives of their ends with respect to their beginnings."""
 
     times: Array
-    """Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,)."""
+    """Times of the stations, shape (K,): the nodes where segments begin and, if steps are shorter, times between
+    them."""
     begins: Array
-    """States and costates where each step begins, shape (2n, K-1)."""
+    """States and costates at the beginning of each step, shape (2n, K-1)."""
     transition: Array
-    """From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n)."""
+    """Transition matrices from each station to the next, in units of ``scale``, shape (K-1, 2n, 2n)."""
     scale: Array
-    """Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions are
-    symplectic."""
+    """Units of states and costates, shape (2n,). The products of the units of each state and its costate are all the
+    same, so that transition matrices are symplectic."""
     nodes: NDArray[np.intp]
-    """Indices of the solution's times at which segments begin, and of the last."""
+    """Indices of the nodes at which segments begin, and of the last node."""
     steps: int
-    """In each segment."""
+    """Number of steps in each segment."""
     jumped: frozenset[int] = frozenset()
-    """The steps in which the control jumps."""
+    """Indices of the steps in which the control jumps."""
 
     @property
     def growth(self) -> float:
-        """By how much errors of the initial values grow at most, in units of the scale."""
+        """Return the largest growth of initial errors, in units of ``scale``; infinite if no digit is left."""
         total, found = np.eye(len(self.scale)), 1.0
         for matrix in self.transition:
             total = matrix @ total
@@ -78,7 +81,7 @@ class Segments:
 
 
 def segments(solution: Solution) -> Segments | None:
-    """Integrate from node to node; ``None`` where that is not finite or takes more than ``MOST_STEPS`` steps."""
+    """Linearise from node to node; ``None`` if values are not finite or more than ``MOST_STEPS`` steps are needed."""
     times, z = solution.times, values(solution)
     slopes = _slopes(solution, times, z)
     if not np.isfinite(slopes).all():
@@ -98,11 +101,11 @@ def segments(solution: Solution) -> Segments | None:
 
 
 def _scales(solution: Solution, slopes: Array) -> Iterator[Array]:
-    """Units of states and costates, one after the other, in each of which neighbouring extremals may turn slowly.
+    """Yield candidates for the units of states and costates, in which neighbouring extremals may rotate slowly.
 
-    They start from the units of the problem and from the largest states along the way: what is next to zero at both
-    ends, as the height above a plane may be, is not so between them. Both are balanced for the steepest rates and for
-    their mean: what is steep for a moment is not what units are for where there is far more time without it.
+    They are derived from the units of the problem and from the largest states along the motion, since a state that is
+    zero at both ends, such as the height above a plane, need not be small between them. Both are balanced for the
+    largest rates and for the mean rates, since a short steep interval should not determine the units of a long motion.
     """
     lasting, n, unit = float(np.ptp(solution.times)), len(solution.x), unit_sizes(solution)
     steepest = np.abs(slopes).max(axis=2)
@@ -115,19 +118,19 @@ def _scales(solution: Solution, slopes: Array) -> Iterator[Array]:
 
 
 def between(solution: Solution, found: Segments, station: int, times: Array) -> Array:
-    """Transitions from a station to times until the next, shape (M, 2n, 2n)."""
+    """Return transition matrices from a station to times before the next station, shape (M, 2n, 2n)."""
     begin = float(found.times[station])
     z = np.repeat(found.begins[:, station : station + 1], len(times), axis=1)
     return _leapt(solution, found.scale, np.full(len(times), begin), z, times - begin)[1]
 
 
 def values(solution: Solution) -> Array:
-    """States and costates at the nodes, shape (2n, N+1)."""
+    """Return states and costates at the nodes, shape (2n, N+1)."""
     return np.concatenate([solution.x, solution.lam])
 
 
 def _slopes(solution: Solution, t: Array, z: Array) -> Array:
-    """The canonical rates by states and costates, shape (2n, 2n, M)."""
+    """Return derivatives of the canonical rates with respect to states and costates, shape (2n, 2n, M)."""
     instance, n, found = solution.instance, len(z) // 2, np.empty((len(z), *z.shape))
     bounds = without_poles(instance, solution.times, solution.x, solution.lam).arguments
     instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, bounds, out=found)
@@ -135,19 +138,19 @@ def _slopes(solution: Solution, t: Array, z: Array) -> Array:
 
 
 def balanced(scale: Array, sizes: Array, duration: float) -> Array:
-    """The scale with other units, in which neighbouring extremals turn as slowly and evenly as may be.
+    """Return units in which neighbouring extremals rotate as slowly and evenly as possible.
 
-    The squares of all rates together are least, by one unit after the other (Osborne, On pre-conditioning of
-    matrices, 1960), where a unit far from the one given counts as a rate of one over the duration.
+    They minimise the sum of the squares of all rates, one unit after the other (Osborne, On pre-conditioning of
+    matrices, 1960), with a penalty for units far from the given ones.
 
     Parameters
     ----------
     scale
         Units of states and costates, shape (2n,).
     sizes
-        Of the canonical rates by states and costates, without their signs, shape (2n, 2n).
+        Magnitudes of the derivatives of canonical rates with respect to states and costates, shape (2n, 2n).
     duration
-        tf - t0.
+        Duration tf - t0.
     """
     n = len(scale) // 2
     size = sizes * (scale / scale[:, None])
@@ -174,9 +177,9 @@ def balanced(scale: Array, sizes: Array, duration: float) -> Array:
 
 @lru_cache
 def _moves(n: int) -> tuple[Array, Array, Array]:
-    """How units may be changed, shape (n + 1, 2n), by which powers rates change then, and which of them rise and fall.
+    """Return the changes of units, shape (n + 1, 2n), and the exponents with which rates rise and fall.
 
-    A state with its costate, each the other way; all costates together.
+    One change scales a state and, inversely, its costate; the last one scales all costates together.
     """
     moves = np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)])
     powers = (moves[:, None, :] - moves[:, :, None]).reshape(len(moves), -1)
@@ -184,9 +187,9 @@ def _moves(n: int) -> tuple[Array, Array, Array]:
 
 
 def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
-    """By how much the sum of the phases turns at most between neighbouring nodes, shape (M-1,).
+    """Return bounds of the change of the sum of phases between neighbouring nodes, shape (M-1,).
 
-    It turns at twice the trace of the Hessian of H on an n-dimensional space.
+    The sum changes at twice the trace of the Hessian of H on an n-dimensional subspace.
     """
     ratio = (scale / scale[:, None]).reshape(-1, 1)
     scaled = slopes.reshape(len(ratio), -1) * ratio
@@ -196,7 +199,7 @@ def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
 
 
 def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
-    """Indices of the nodes where segments begin: evenly in time, dense enough, switching times among them."""
+    """Return indices of the nodes where segments begin: even in time, dense enough, and at switching times."""
     times, last = solution.times, len(solution.times) - 1
     even = np.searchsorted(times, np.linspace(times[0], times[-1], FEWEST + 1)[1:-1])
     dense = np.searchsorted(turned, np.arange(FRACTION * TURN, turned[-1], FRACTION * TURN)) - 1
@@ -225,7 +228,7 @@ def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: 
 
 
 def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tuple[Array, Array]:
-    """Where steps from many beginnings end, shape (2n, M), and their transitions, (M, 2n, 2n)."""
+    """Return the ends of steps from many beginnings, shape (2n, M), and their transition matrices, (M, 2n, 2n)."""
     instance, n = solution.instance, len(z) // 2
     p, bounds = instance.parameters, instance.control_set.arguments
 

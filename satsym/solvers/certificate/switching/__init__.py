@@ -1,1 +1,1 @@
-"""Certificates of bang-bang and singular arcs: the extremal again, strict switching, the second variation."""
+"""Certificates of bang-bang and singular arcs: repeated integration, strict switching, second variation."""

@@ -1,4 +1,4 @@
-"""What the certificate of exact arcs says of path constraints: whether they hold, and whether they press strictly."""
+"""Conditions on path constraints for extremals in exact arcs: whether they hold and have strict multipliers."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ from satsym.solvers.switching.boundary import BoundaryField, off_boundary, pushe
 from satsym.solvers.switching.structure import SINGULAR
 
 VIOLATED, PULLING, STRICT, JUMP = 1e-9, 1e-8, 1e-6, 1e-7
-"""Largest violation of a constraint relative to its size, largest multiplier of the wrong sign, least share of the
-largest multiplier that is strict, and largest jump of states and costates that is none."""
+"""Largest relative violation of a constraint; largest relative multiplier of the wrong sign that counts as zero;
+minimum multiplier, relative to the largest one, that counts as strict; largest relative jump of states and costates
+that counts as zero."""
 
 BESIDE = 0.05
-"""Share of a boundary arc beside a singular one, next to which its multiplier may vanish."""
+"""Fraction of a boundary arc, next to a singular arc, on which its multiplier may vanish."""
 
 
 def on_boundary(again: Replay) -> bool:
-    """Whether any arc is on a boundary."""
+    """Return whether any arc is on the boundary of a path constraint."""
     return any(isinstance(piece.field, BoundaryField) for piece in again.pieces)
 
 
 def still(again: Replay) -> bool:
-    """Whether the boundaries do not move by themselves, so that H is constant along them."""
+    """Return whether the boundaries do not depend on time explicitly, so that H is constant along them."""
     fields = ((piece.field, piece.end, piece.after.tolist()) for piece in again.pieces)
     return not any(
         isinstance(one, BoundaryField) and off_boundary(one.instance, one.constraint, t, z)[2] for one, t, z in fields
@@ -35,7 +36,7 @@ def still(again: Replay) -> bool:
 
 
 def necessary(solution: Solution, again: Replay) -> list[Check]:
-    """Constraints hold along the replay, and multipliers of those on their boundaries have the right sign."""
+    """Return checks that constraints hold along the replay and that boundary multipliers have the right sign."""
     instance = solution.instance
     derived = np.array([one.order > 0 for one in instance.model.spec.path_constraints])
     g = values(instance, again.times, again.z)
@@ -51,7 +52,7 @@ def necessary(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _off(again: Replay, room: Array) -> float:
-    """Largest distance from boundaries along arcs on these, relative to sizes of constraints, shape (h,)."""
+    """Return the largest distance from the boundary on boundary arcs, relative to constraint magnitudes, shape (h,)."""
     found = [0.0]
     for piece in again.pieces:
         if isinstance(piece.field, BoundaryField):
@@ -61,7 +62,7 @@ def _off(again: Replay, room: Array) -> float:
 
 
 def _jumps(again: Replay) -> list[tuple[float, float]]:
-    """Multipliers where boundary arcs begin and end, and what states and costates jump besides, relative to sizes."""
+    """Return multipliers at the ends of boundary arcs, and jumps that they do not explain, both relative."""
     found = []
     for before, after in pairwise(again.pieces):
         for field in (before.field, after.field):
@@ -74,17 +75,20 @@ def _jumps(again: Replay) -> list[tuple[float, float]]:
 
 
 def jumping(again: Replay) -> bool:
-    """Whether costates jump where boundary arcs begin or end."""
+    """Return whether costates jump at the entry or exit of a boundary arc."""
     return any(by > JUMP for by, _ in _jumps(again))
 
 
 def strict(again: Replay) -> list[Check]:
-    """Whether multipliers press strictly."""
+    """Return a check that multipliers on boundaries are strictly positive."""
     return [Check("a multiplier vanishes on a boundary arc", float(not _pressure(again, BESIDE) > STRICT), 0.0)]
 
 
 def _pressure(again: Replay, beside: float) -> float:
-    """The least multiplier on boundaries, relative to the largest; this share of an arc beside a singular one apart."""
+    """Return the smallest multiplier on boundary arcs, relative to the largest.
+
+    A fraction ``beside`` of an arc next to a singular arc is left out.
+    """
     found = []
     for k, piece in enumerate(again.pieces):
         if isinstance(piece.field, BoundaryField):

@@ -1,8 +1,8 @@
-"""The certificate of a motion whose controls would have to switch infinitely often: how far from the optimum it is.
+"""The certificate of a motion whose optimal controls would switch infinitely often: its distance from the optimum.
 
-The motion and its costates are integrated again, from node to node: neighbouring extremals of a problem that is hardly
-regularised part too quickly for the initial costates alone to say where they end. What its cost exceeds the least by is
-integrated with them.
+The motion and its costates are integrated again from node to node, since neighbouring extremals of a weakly regularised
+problem diverge too quickly for an integration from the initial costates alone. The excess of the cost over the minimum
+is integrated with them.
 """
 
 from __future__ import annotations
@@ -25,20 +25,22 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
 
 RESIDUAL, DEFECT, STATIONARY, COST = 1e-9, 1e-7, 1e-8, 1e-8
-"""Largest boundary residual, defect, violation of the smoothed law and error of the stated cost, relative."""
+"""Largest boundary residual, defect, violation of the regularised control law and error of the stated cost,
+relative."""
 
 NARROW = 1e-3
 """Largest width of the cost interval, relative to the cost."""
 
 SAME_WIDTH = 1e-2
-"""By this share of its width the lower end of the interval may be off."""
+"""Largest error of the lower end of the cost interval, relative to its width."""
 
 PARTS = 8
-"""How many a step between nodes is taken in: what H exceeds its minimum by is tiny, and has corners of its own."""
+"""Number of integration steps between two nodes. The excess of H over its minimum is tiny and has corners of its
+own."""
 
 
 def certify(solution: Solution, interval: CostInterval) -> Certificate:
-    """Certify what a regularised problem says; never more than an extremal, for the optimum itself is not shown."""
+    """Certify the solution of a regularised problem; at best as an extremal, since it is not the optimum itself."""
     smooth = _smooth(solution, interval)
     along = segments(smooth)
     reached = None if along is None else conditions.node_by_node(smooth, along)
@@ -69,7 +71,7 @@ def certify(solution: Solution, interval: CostInterval) -> Certificate:
 
 
 def _smooth(solution: Solution, interval: CostInterval) -> Solution:
-    """A motion as a solution of the regularised problem, with the times at which bounds are met and left."""
+    """Return a motion as a solution of the regularised problem, with the times at which bounds are met and left."""
     instance, t = solution.instance, solution.times
     low, high = instance.control_set.box
     changes = np.diff((solution.u >= high).astype(int) - (solution.u <= low), axis=1) != 0
@@ -78,7 +80,7 @@ def _smooth(solution: Solution, interval: CostInterval) -> Solution:
 
 
 def _off_law(smooth: Solution) -> float:
-    """Largest difference of a control from the one that minimises the regularised H, relative to its range."""
+    """Return the largest difference of a control from the minimiser of the regularised H, relative to its range."""
     instance = smooth.instance
     law = smoothed_law(instance, instance.control_set, smooth.times, smooth.x, smooth.lam)
     low, high = instance.control_set.box
@@ -86,7 +88,7 @@ def _off_law(smooth: Solution) -> float:
 
 
 def _integrated(smooth: Solution) -> tuple[float, float] | None:
-    """The cost, and the integral of what H exceeds its minimum by, step by step between nodes."""
+    """Return the cost, and the integral of the excess of H over its minimum; ``None`` if it is not finite."""
     instance, n, times, start = smooth.instance, len(smooth.x), smooth.times, values(smooth)
     apart = np.diff(times) > 0.0
 
@@ -112,7 +114,7 @@ def _canonical(instance: Instance, t: Array, z: Array) -> Array:
 
 
 def _costs(instance: Instance, t: Array, z: Array) -> Array:
-    """The running cost, and what H exceeds its minimum by, shape (2, N)."""
+    """Return the running cost, and the excess of H over its minimum, shape (2, N)."""
     n = len(z) // 2
     x, lam = z[:n], z[n:]
     u = smoothed_law(instance, instance.control_set, t, x, lam)
@@ -121,7 +123,10 @@ def _costs(instance: Instance, t: Array, z: Array) -> Array:
 
 
 def _excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
-    """By how much H is above its minimum, control by control, as it is affine in each but for a magnitude; (N,)."""
+    """Return the excess of H over its minimum, shape (N,), control by control.
+
+    H is affine in each control, except for a term in its magnitude.
+    """
     model, p = instance.model, instance.parameters
     here, total = np.asarray(model.hamiltonian_batch(t, x, u, lam, p)), np.zeros(len(t))
     for i, places in enumerate(zip(instance.lower, instance.upper, instance.control_set.rest, strict=True)):

@@ -1,4 +1,4 @@
-"""The certificate of exact arcs: the extremal again by other means, strict switching, second variation, competitors."""
+"""The certificate of exact arcs: repeated integration, strict switching, second variation and competitors."""
 
 from __future__ import annotations
 
@@ -36,36 +36,41 @@ from satsym.solvers.switching.throttled import ThrottledField, shown_by, signs
 from satsym.status import Verdict
 
 TIMES = 1e-9
-"""Largest change of switching times, relative to the duration."""
+"""Largest change of switching times, relative to the duration, between solution and repeated integration."""
 
 STRICT = 1e-6
-"""Least rate of a switching function at a switch, relative to its size over the duration; least distance between
-switches and least distance of a switching function from its zero elsewhere, relative as well."""
+"""Minimum rate of a switching function at a switch, relative to its magnitude over the duration; also the minimum
+relative distance between switches, and the minimum relative distance of a switching function from its zero elsewhere.
+Below them switching does not count as strict."""
 
 CLOSE_TO_SWITCH = 0.01
-"""Share of the duration around a switch within which a switching function may be as small as it likes."""
+"""Fraction of the duration around a switch within which small values of a switching function are not tested."""
 
 CURVED = 1e-7
-"""Least relative curvature in the switching times."""
+"""Minimum relative curvature in the switching times for which the second variation counts as positive."""
 
 LATER = Check("not strict: the same arcs at a later time have the same cost", 1.0, 0.0)
-"""Why a second variation is not positive, where a shift in time is the whole reason."""
+"""Check that names a shift in time as the only reason why a second variation is not positive."""
 
 PIECES, STEPS_PER_PIECE, FEWEST_STEPS = 20, 12, 4
-"""On which changes of the continuous controls are constant, over all arcs; steps of the classical Runge-Kutta method in
-each, and in an arc at least."""
+"""Number of pieces, over all arcs, on which variations of the continuous controls are constant. Number of classical
+Runge-Kutta steps in each piece, and minimum number in an arc."""
 
 SHIFT = 1e-4
-"""Difference over which H by explicit time is differentiated once more, as a share of an arc."""
+"""Step of the finite difference of H_t with respect to time, as a fraction of the length of an arc."""
 
 CHANGED = 0.5
-"""Share of the least curvature by which it may change when twice as many pieces are taken."""
+"""Largest change of the minimum curvature, relative, when the number of pieces is doubled. With a larger change the
+second variation counts as not resolved."""
 
 
 def certify(
     solution: Solution, deadline: float, compare: bool = True, past: Past | None = None
 ) -> tuple[Certificate, Solution | None]:
-    """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`. And an extremal that costs less, if any."""
+    """Certify an extremal in exact arcs, see :func:`satsym.solvers.certificate.certify`.
+
+    Returns the certificate, and a cheaper extremal or ``None``.
+    """
     limits = Limits(MOST_ITERATIONS, deadline)
     try:
         again, failed = replay(solution, limits), "flow from the initial costates is finite"
@@ -88,7 +93,10 @@ def certify(
 
 
 def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
-    """Replay part by part, without gaps, where one flow loses its digits; ``None`` where that fails as well."""
+    """Integrate again part by part and check the first-order conditions; ``None`` if this fails as well.
+
+    This is used if errors grow too much along one flow.
+    """
     try:
         again = replay(solution, limits, closely=True)
     except (TooMuchWork, OutOfTime):
@@ -114,7 +122,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check]:
-    """Each is a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
     free = [decided_by_none(solution, control) for control in range(len(shown_by(solution.instance)))]
     extended = with_end_switches(again, _along(again)[0])
     rates, gap, distance = _strictness(again, extended, free)
@@ -142,7 +150,7 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
 
 
 def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
-    """The second variation in the times of junctions and, where vectors are throttled, in directions as well."""
+    """Return checks of the second variation in junction times and, for throttled vectors, in directions."""
     throttled = solution.instance.model.spec.throttled
     name = f"second variation with respect to {'arc lengths and directions' if throttled else 'the switching times'}"
     try:
@@ -156,11 +164,11 @@ def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Chec
 
 
 def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bool:
-    """Whether the signs of the switching functions say all: in a convex problem, saturated all along.
+    """Return whether signs of the switching functions suffice: the problem is convex and every arc is saturated.
 
-    No admissible motion costs less than such an extremal, and one that costs the same has the same control wherever
-    the switching function is not zero (Mangasarian, see :func:`convex`): it need not pass through its zeros at a rate,
-    and at the end several of its rates may vanish as well.
+    No admissible motion costs less than such an extremal, and one of the same cost has the same control wherever the
+    switching function is not zero (Mangasarian, see :func:`convex`). The rate at its zeros and at the final time may
+    then vanish.
     """
     if any(free) or solution.instance.model.spec.throttled:
         return False
@@ -169,9 +177,10 @@ def _decided_by_signs(solution: Solution, again: Replay, free: list[bool]) -> bo
 
 
 def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
-    """Whether a switching function is, away from its switches, no further from its zeros than errors may take it.
+    """Return whether a switching function vanishes, within integration errors, away from its switches.
 
-    It is next to nothing shortly before an end at which several of its rates vanish, but beyond these errors.
+    Shortly before a final time at which several of its derivatives vanish it is very small, but larger than these
+    errors.
     """
     by = Integration(np.concatenate(typical(solution)), Limits(MOST_ITERATIONS, float("inf")))
     lasting = float(again.times[-1] - again.times[0])
@@ -188,7 +197,7 @@ def _vanishes(solution: Solution, again: Replay, extended: Replay) -> bool:
 
 
 def _moved(solution: Solution, again: Replay) -> float:
-    """Largest change of a switching time relative to the duration; infinite where their numbers differ."""
+    """Return the largest change of a switching time relative to the duration; infinite if their numbers differ."""
     lasting = float(solution.times[-1] - solution.times[0])
     worst = 0.0
     for control, shown in enumerate(shown_by(solution.instance)):
@@ -201,7 +210,7 @@ def _moved(solution: Solution, again: Replay) -> float:
 
 
 def _excess(solution: Solution) -> float:
-    """By how much H exceeds its minimum over the box at most, relative to its terms, or a control its box."""
+    """Return the largest relative excess of H over its minimum in the box, plus any relative violation of the box."""
     instance, model = solution.instance, solution.instance.model
     p, u = instance.parameters, solution.u
     if model.spec.throttled:
@@ -217,7 +226,7 @@ def _excess(solution: Solution) -> float:
 
 
 def _excess_by_law(solution: Solution) -> float:
-    """By how much H exceeds its minimum where vectors are throttled, by the law that minimises it."""
+    """Return the largest relative excess of H over its minimum for throttled vectors, by the minimising control law."""
     instance, model = solution.instance, solution.instance.model
     t, x, lam, p = solution.times, solution.x, solution.lam, instance.parameters
     law = model.control_law_batch(t, x, lam, p, instance.control_set.arguments)
@@ -229,15 +238,15 @@ def _excess_by_law(solution: Solution) -> float:
 
 
 def _terms(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> float:
-    """The largest sum of the terms that H consists of beside the running cost."""
+    """Return the largest sum of the magnitudes of the terms of H without the running cost."""
     rates = instance.model.dynamics_batch(t, x, u, instance.parameters)
     return float(np.abs(lam * rates).sum(axis=0).max())
 
 
 def _off_singular(solution: Solution, again: Replay) -> float:
-    """Largest switching function on singular arcs, where it is to vanish, relative to its size.
+    """Return the largest switching function on singular arcs, where it should vanish, relative to its magnitude.
 
-    That is its size elsewhere, or, if it vanishes all along, what it would be by the sizes of states and costates.
+    The magnitude is taken on other arcs or, if it vanishes on all of them, estimated from states and costates.
     """
     sizes, _ = _along(again)
     worst, both = 0.0, np.concatenate(typical(solution))
@@ -253,7 +262,7 @@ def _off_singular(solution: Solution, again: Replay) -> float:
 
 
 def _legendre(again: Replay) -> float:
-    """The least generalised Legendre-Clebsch expression on singular arcs; NaN without any."""
+    """Return the minimum generalised Legendre-Clebsch expression on singular arcs; NaN if there is none."""
     values = [
         piece.field.legendre(t, z.tolist())
         for piece in again.pieces
@@ -264,9 +273,9 @@ def _legendre(again: Replay) -> float:
 
 
 def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[float, float, float]:
-    """Least rate of a switching function at a switch, least time between switches, and least distance elsewhere.
+    """Return minimum rate at switches, minimum time between switches, and minimum distance from zero elsewhere.
 
-    Switches of controls that are free to do what they like are left out.
+    All are relative and concern switching functions. Controls that H does not determine are left out.
     """
     pieces = extended.pieces
     start, end = pieces[0].start, pieces[-1].end
@@ -299,7 +308,7 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
 
 
 def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
-    """Sizes of the switching functions, and their distances from the values at which they would switch."""
+    """Return magnitudes of the switching functions, and their distances from the values at which controls switch."""
     pieces = again.pieces
     n, instance = pieces[0].field.n, pieces[0].field.instance
     sigma, weight = signs(instance, again.times, again.z[:n], again.z[n:])
@@ -317,16 +326,16 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
 
 
 def curvature(solution: Solution, again: Replay, by: Integration) -> tuple[float, Quadratic]:
-    """The smallest eigenvalue of the form on what keeps the end, and the form; the former is NaN if it is not resolved.
+    """Return the smallest eigenvalue of the second variation under the end conditions, and the form.
 
     Parameters
     ----------
     solution
-        Whose arcs are saturated, on boundaries, or of throttled vectors.
+        The repeated integration of the solution.
     again
         The solution again.
     by
-        How arcs are integrated.
+        Integration of the arcs.
     """
     coarse, fine = (form_of(solution, again, by, pieces) for pieces in (PIECES, 2 * PIECES))
     least, before = fine.curvature, coarse.curvature
@@ -335,7 +344,7 @@ def curvature(solution: Solution, again: Replay, by: Integration) -> tuple[float
 
 
 def form_of(solution: Solution, again: Replay, by: Integration, pieces: int) -> Quadratic:
-    """The second variation, with so many pieces over all arcs."""
+    """Return the second variation, with a given number of pieces over all arcs."""
     state, cost = units(solution, typical(solution)[0])
     arcs, before = list[Arc](), None
     for piece in again.pieces:
@@ -371,7 +380,7 @@ def _arc(piece: Piece, entered: int | None, state: Array, cost: float, pieces: i
 
 
 def _by_time(field: Field, times: Array, z: Array) -> Array:
-    """H by explicit time, shape (N,)."""
+    """Return the partial derivative of H with respect to explicit time, shape (N,)."""
     if field.model.spec.autonomous:
         return np.zeros(len(times))
     ahead = times + 1j * NUDGE  # where a boundary moves, so does the control that keeps to it
@@ -381,7 +390,7 @@ def _by_time(field: Field, times: Array, z: Array) -> Array:
 
 
 def _drift(field: Field, times: Array, z: Array) -> Array:
-    """The rates of states and costates by explicit time, shape (2n, N)."""
+    """Return the derivatives of the rates of states and costates with respect to explicit time, shape (2n, N)."""
     if isinstance(field, ThrottledField):
         return np.array([field.drift(t, y) for t, y in zip(times.tolist(), z.T.tolist(), strict=True)]).T
     ahead: tuple[Any, Any] = times + 1j * NUDGE, z.astype(complex)

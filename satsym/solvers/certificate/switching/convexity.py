@@ -1,4 +1,4 @@
-"""Whether states that are drawn show a problem to be convex along an extremal of exact arcs."""
+"""Test at random states whether a problem is convex along an extremal of exact arcs."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from satsym.arrays import Array
 from satsym.solution import Solution
 
 DRAWN = 200
-"""States at which convexity is looked at, around those of the solution."""
+"""Number of random states, around those of the solution, at which convexity is tested."""
 
 ROUNDING = 1e-12
-"""Largest relative violation that is none."""
+"""Largest relative violation of convexity that counts as rounding."""
 
 
 def convex(solution: Solution) -> bool:
-    """Whether all states that were drawn show that the problem is convex along an extremal, a global minimum then.
+    """Return whether the problem is convex at all random states, so that the extremal is a global minimum.
 
-    With the Hamiltonian convex in states and controls, a convex terminal cost and given or free final states, no
-    admissible motion is cheaper. With singular arcs that satisfy the strict generalised Legendre-Clebsch condition and
-    strict bounds elsewhere, none costs the same either (Mangasarian, Sufficient conditions for the optimal control of
-    nonlinear systems, SIAM Journal on Control 4, 1966). It is only asked where the final time is given.
+    If the Hamiltonian is convex in states and controls, the terminal cost is convex and final states are given or free,
+    no admissible motion is cheaper. With singular arcs that satisfy the strict generalised Legendre-Clebsch condition
+    and strict bounds elsewhere, no other motion has the same cost either (Mangasarian, Sufficient conditions for the
+    optimal control of nonlinear systems, SIAM Journal on Control 4, 1966). Only problems with a given final time are
+    tested.
     """
     instance, model = solution.instance, solution.instance.model
     if instance.tf is None or model.spec.multipliers or "reference" in instance.final.values():
@@ -43,7 +44,7 @@ def convex(solution: Solution) -> bool:
 
 
 def _convex_end(solution: Solution, x: Array, size: Array) -> bool:
-    """Whether the gradient of the terminal cost grows along every line between states that were drawn."""
+    """Return whether the gradient of the terminal cost is monotone along lines between the random states."""
     model, p, tf = solution.instance.model, solution.instance.parameters, float(solution.times[-1])
     slopes = np.array([model.terminal_gradient(tf, tuple(column), p) for column in x.T.tolist()]).T
     growth = (np.diff(slopes, axis=1) * np.diff(x, axis=1)).sum(axis=0)

@@ -1,7 +1,7 @@
-"""Switches at the very ends: where a free final state makes a switching function vanish there.
+"""Switches at the initial or final time, where a free final state makes a switching function vanish.
 
-Such an extremal switches strictly if it does so at these switches too, each followed or preceded by an arc of no length
-whose end may move like any other.
+Such an extremal has strict switching if the condition holds at these switches too. Each of them is represented by an
+arc of no length, whose end may vary like any other.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 from satsym.solvers.switching.throttled import equations
 
 AT_SWITCH = 1e-9
-"""Distance of a switching function from where it switches, relative to its size, that is none."""
+"""Relative distance of a switching function from its switching value below which a control switches at an end."""
 
 
 def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
-    """The replay with an arc of no length at an end where a control is just about to switch.
+    """Return the replay with an arc of no length added at an end where a control is about to switch.
 
     Parameters
     ----------
     sizes
-        Of the switching functions.
+        Magnitudes of the switching functions.
     """
     pieces = list(again.pieces)
     first, last = pieces[0], pieces[-1]
@@ -46,7 +46,7 @@ def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
 
 
 def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int | None:
-    """The level on the other side of the switch that a control is at; ``None`` where it is at none."""
+    """Return the level of a control beyond the switch at the given time; ``None`` if it does not switch then."""
     here, level = z.tolist(), field.levels[control]
     low, high = field.instance.control_set.switching
     if level >= SINGULAR or low[control] == high[control]:

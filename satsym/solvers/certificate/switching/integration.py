@@ -1,4 +1,4 @@
-"""How a switching extremal is integrated again: by SciPy, which the solver does not use."""
+"""Repeated integration of a switching extremal by SciPy, which the solver does not use."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ TOLERANCE = 5e-14
 
 
 class OutOfTime(Exception):
-    """An integration takes longer than the clock allows."""
+    """Raised if an integration exceeds the time limit."""
 
 
 class TooMuchWork(Exception):
-    """An integration takes more evaluations than it may: rates that are not smooth make its steps tiny."""
+    """Raised if an integration needs too many evaluations, as where non-smooth rates make its steps tiny."""
 
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """Some time in which no control switches, from where the motion is at its start."""
+    """A time interval in which no control switches, with the state and costate at its start."""
 
     field: Field
-    """Its equations, with the levels of the controls."""
+    """Equations of motion, with the levels of the controls."""
     start: float
     end: float
-    """Times."""
+    """Start and end of the interval."""
     z: Array
     """States and costates at the start, shape (2n,)."""
 
@@ -40,28 +40,28 @@ class Span:
         return self.end - self.start
 
     def until(self, end: float) -> Span:
-        """A span from the same start to another end."""
+        """Return a span from the same start to another end."""
         return replace(self, end=end)
 
 
 @dataclass(frozen=True, eq=False)
 class Integration:
-    """Integration of arcs with as many digits as SciPy can."""
+    """Integration of arcs at the highest accuracy of SciPy."""
 
     sizes: Array
-    """Typical ones of states and costates, shape (2n,)."""
+    """Typical magnitudes of states and costates, shape (2n,)."""
     limits: Limits
-    """Spent by the evaluations."""
+    """Limits from which the evaluations are deducted."""
 
     def end(self, span: Span) -> Array:
-        """States and costates at the end of a span."""
+        """Return states and costates at the end of a span."""
         if span.end <= span.start:
             return span.z
         last: Array = self.solved(lambda t, y: span.field.rates(t, y.tolist()), span, span.z, self.sizes).y[:, -1]
         return last
 
     def transition(self, span: Span) -> tuple[Array, Array]:
-        """States and costates at the end of a span, and their derivatives by those at its start, shape (2n, 2n)."""
+        """Return states and costates at the end of a span, and their derivatives by the initial ones, (2n, 2n)."""
         rows = len(span.z)
         if span.end <= span.start:
             return span.z, np.eye(rows)
@@ -83,23 +83,23 @@ class Integration:
         scale: Array,
         **options: Any,
     ) -> Any:
-        """What SciPy finds.
+        """Return the result of SciPy's ``solve_ivp``.
 
         Parameters
         ----------
         rates, span, start
-            What is integrated, from when to when, and from where.
+            Rates that are integrated, the interval of integration, and the initial values.
         scale
-            Typical sizes.
+            Typical magnitudes of the values, to which the absolute tolerance is relative.
         options
-            Others of SciPy.
+            Further options of SciPy.
 
         Raises
         ------
         ArithmeticError
-            If SciPy cannot integrate so far.
+            If SciPy cannot integrate to the end of the interval.
         OutOfTime, TooMuchWork
-            If the limits do not allow it.
+            If the limits of time or work are exceeded.
         """
         from scipy.integrate import solve_ivp
 

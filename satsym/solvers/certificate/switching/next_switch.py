@@ -1,4 +1,4 @@
-"""Where the next switch of an arc is: integrated by SciPy until a switching function changes its sign."""
+"""The next switch of an arc, found by integration with SciPy until a switching function changes its sign."""
 
 from __future__ import annotations
 
@@ -14,55 +14,57 @@ from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR
 
 POLISHED = 6
-"""Newton steps to the time of a switch."""
+"""Maximum number of Newton steps that refine the time of a switch."""
 
 AT_ONCE = 1e-9
-"""Share of the time that is left within which a switch is the one that began the arc; and share of its size at which a
-switching function counts as zero there."""
+"""Fraction of the remaining time within which a switch is the one that began the arc. Also the magnitude of a switching
+function, relative to its typical value, below which it counts as zero at the start of the arc."""
 
 CLEAR_CHANGE = 1e-6
-"""Share of its size by which a switching function changes in the time that is left, at its rate at a zero, where nobody
-doubts that it passes it."""
+"""Change of a switching function over the remaining time at its rate at a zero, relative to its typical magnitude,
+above which it certainly changes its sign."""
 
 TOUCHED = 1e-11
-"""Share of its size by which a switching function has to be beyond a zero, if it is not only touched."""
+"""Relative magnitude of a switching function beyond a zero above which it changes its sign; below, the zero is
+touched."""
 
 AHEAD, TURNING = 1e-6, 1e-3
-"""Share of the time that is left after which the level of a control is looked at that switches at once, and by how much
-its switching function, relative to its size, changes at least in that time."""
+"""Fraction of the remaining time after which the level of a control that switches at once is evaluated; and minimum
+relative change of its switching function over the remaining time."""
 
 AT_THE_END = 1e-11
-"""Share of the time within which a switch before the end is rounding: a costate that vanishes at the end does so there
-to the last digits only. What is shorter is no arc for the solver either."""
+"""Fraction of the time within which a switch before the final time counts as rounding: a costate that vanishes at the
+final time does so up to rounding only. The solver does not resolve shorter arcs either."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """Where a control passes to another level: where its switching function and, by a ratio, its weight cancel."""
+    """A switching condition of a control: its switching function plus a ratio times its weight vanishes."""
 
     field: Field
     control: int
     ratio: float
 
     def gap(self, t: float, y: list[float]) -> tuple[float, float]:
-        """What vanishes there, and the rate of that."""
+        """Return the value of the switching condition, and its rate."""
         return self.field.passing(t, y, self.control, self.ratio)
 
     def size(self, t: float, z: Array, sizes: Array) -> float:
-        """The size of the switching function."""
+        """Return the typical magnitude of the switching function."""
         return max(float(np.abs(self.field.gradient(t, z.tolist(), self.control)) @ sizes), 1e-300)
 
     def blurred(self, span: Span, sizes: Array) -> float:
-        """Share of a span after whose start signs tell nothing: more of it where the rate vanishes there as well.
+        """Return the initial fraction of a span in which the sign of the condition is unreliable.
 
-        So it does where a singular arc ends, and the sign of next to nothing is that of rounding.
+        The fraction is larger if the rate vanishes at the start as well, as at the end of a singular arc, where the
+        sign of a negligible value is that of rounding.
         """
         now, rate = self.gap(span.start, span.z.tolist())
         flat = max(abs(now), abs(rate) * span.lasting) <= AT_ONCE * self.size(span.start, span.z, sizes)
         return AT_ONCE**0.5 if flat else AT_ONCE
 
     def sign(self, span: Span, by: Integration) -> float:
-        """The sign of the gap at the start of a span, or right after it."""
+        """Return the sign of the condition at the start of a span, or right after it if the value vanishes."""
         now, rate = self.gap(span.start, span.z.tolist())
         if abs(now) > AT_ONCE * self.size(span.start, span.z, by.sizes):
             return float(np.sign(now))
@@ -73,7 +75,7 @@ class Mark:
         return float(np.sign(rate))
 
     def event(self, span: Span, sign: float, sizes: Array) -> Any:
-        """For SciPy: a change of sign, away from the switch that began the arc."""
+        """Return an event function for SciPy that detects a change of sign after the switch that began the arc."""
         field, ratio, control = self.field, self.ratio, self.control
         blurred = self.blurred(span, sizes)
 
@@ -88,15 +90,15 @@ class Mark:
 
 
 def next_switch(span: Span, settled: list[bool], by: Integration, spread: Array) -> tuple[float, int] | None:
-    """When, and of which control, the next change of sign is; ``None`` where there is none that rounding may not make.
+    """Return time and control of the next change of sign; ``None`` if rounding may explain every change.
 
-    Where a switching function and several of its rates vanish at the end, as if switches went on without end, it is
-    next to nothing long before, and its sign there is that of the errors which the flow has made until then.
+    If a switching function and several of its derivatives vanish at the final time, it is negligible long before, and
+    its sign there is that of the accumulated integration errors.
 
     Parameters
     ----------
     spread
-        How values at the start of the span follow those with which the flow began, shape (2n, 2n).
+        Derivatives of the values at the start of the span by those at the start of the flow, shape (2n, 2n).
 
     Raises
     ------
@@ -144,9 +146,9 @@ def next_switch(span: Span, settled: list[bool], by: Integration, spread: Array)
 
 
 def noise(span: Span, control: int, by: Integration, spread: Array) -> float:
-    """Up to which errors of integration make a switching function what it is at the end of a span.
+    """Return the magnitude that integration errors may give to a switching function at the end of a span.
 
-    To first order: each component is wrong by the tolerance, when the flow begins and when the span does.
+    To first order, each component has the error of the tolerance at the start of the flow and of the span.
     """
     z, transition = by.transition(span)
     row = span.field.gradient(span.end, z.tolist(), control) @ transition
@@ -154,7 +156,7 @@ def noise(span: Span, control: int, by: Integration, spread: Array) -> float:
 
 
 def _told(mark: Mark, span: Span, when: float, by: Integration, spread: Array) -> bool:
-    """Whether a switching function is anywhere after a zero further beyond it than errors take it."""
+    """Return whether a switching function exceeds its integration error somewhere after a zero."""
     there = by.end(span.until(when))
     _, rate = mark.gap(when, there.tolist())
     if abs(rate) * (span.end - when) > CLEAR_CHANGE * mark.size(when, there, by.sizes):
@@ -173,7 +175,7 @@ def _told(mark: Mark, span: Span, when: float, by: Integration, spread: Array) -
 
 
 def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | None:
-    """A control that switches at the very start of an arc, together with another, and its level from there."""
+    """Return a control that switches at the very start of an arc, and its level from there; ``None`` if none does."""
     field, start, here = span.field, span.start, span.z.tolist()
     for mark in _marks(span, settled):
         now, rate = mark.gap(start, here)
@@ -187,7 +189,7 @@ def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | 
 
 
 def _marks(span: Span, settled: list[bool]) -> list[Mark]:
-    """All values that a switch may be at, of the controls that are neither settled nor singular."""
+    """Return all switching conditions of the controls that are neither settled nor singular."""
     field, marks = span.field, []
     low, high = field.instance.control_set.switching
     for i, level in enumerate(field.levels):
@@ -199,7 +201,7 @@ def _marks(span: Span, settled: list[bool]) -> list[Mark]:
 
 
 def best_level(field: Field, t: float, z: list[float], control: int, later: float) -> int:
-    """The level that is best for a control, a little later."""
+    """Return the level that minimises H for a control, a short time later."""
     sigma, rate = field.switching(t, z, control)
     weight, growth = field.weight(t, z, control), field.weight_gradient(t, z, control)[1]
     ahead = np.array([sigma + rate * later]), np.array([weight + growth * later])
@@ -207,7 +209,10 @@ def best_level(field: Field, t: float, z: list[float], control: int, later: floa
 
 
 def _polished(mark: Mark, span: Span, guess: float, by: Integration) -> float:
-    """The time by Newton's method: SciPy finds events on an interpolant that is less accurate than its steps."""
+    """Return the time of a switch, refined by Newton's method.
+
+    SciPy finds events on an interpolant that is less accurate than its steps.
+    """
     at = guess
     for _ in range(POLISHED):
         value, rate = mark.gap(at, by.end(span.until(at)).tolist())

@@ -1,7 +1,7 @@
-"""A switching extremal, integrated again from its initial costates: the exact law, with its own switches.
+"""Repeated integration of a switching extremal from its initial costates, by the exact control law.
 
-Where the law switches is found from the signs of the switching functions, not taken from the solver; SciPy's DOP853
-integrates, which the solver does not use. Only where singular arcs begin and end, which no sign shows, is the solver's.
+Switching times follow from the signs of the switching functions, not from the solver; SciPy's DOP853 integrates, which
+the solver does not use. Only the ends of singular arcs, which no sign shows, are taken from the solver.
 """
 
 from __future__ import annotations
@@ -29,74 +29,77 @@ from satsym.solvers.switching.throttled import equations
 MOST_SWITCHES = 200
 
 EVALUATIONS = 1_000_000
-"""How often the rates may be evaluated."""
+"""Maximum number of evaluations of the rates."""
 
 ROUNDING = 1e-12
-"""Share of its size up to which rounding makes a switching function what it is."""
+"""Magnitude of a switching function, relative to its typical value, that counts as rounding."""
 
 TOUCHING = 1e-4
-"""A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
+"""Largest distance of a change of sign before a singular arc, relative to the length of the arc before it, at which the
+change counts as part of the junction with the singular arc."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """An arc of the replay."""
+    """One arc of the repeated integration."""
 
     field: Field
-    """Its equations, with the levels of the controls."""
+    """Equations of motion, with the levels of the controls."""
     start: float
     end: float
-    """Times."""
+    """Start and end of the arc."""
     before: Array
     after: Array
-    """States and costates there, shape (2n,)."""
+    """States and costates at the start and at the end of the arc, shape (2n,)."""
     switched: int | None
-    """The control whose switch ends it; ``None`` at the final time."""
+    """Index of the control whose switch ends the arc; ``None`` at the final time."""
     transition: Array
-    """Derivatives of ``after`` by ``before``, shape (2n, 2n)."""
+    """Derivatives of ``after`` with respect to ``before``, shape (2n, 2n)."""
     spread: Array
-    """Derivatives of ``before`` by what the flow began with, times of switches moving as well, shape (2n, 2n)."""
+    """Derivatives of ``before`` with respect to the initial values of the flow, shifts of switching times included,
+    shape (2n, 2n)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """The extremal again."""
+    """A switching extremal as integrated again."""
 
     pieces: list[Piece]
-    """Its arcs."""
+    """Arcs of the extremal."""
     times: Array
     z: Array
     u: Array
-    """The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K)."""
+    """Times, states and costates, and controls at the solver's nodes and at the ends of arcs, shapes (K,), (2n, K), (m,
+    K)."""
     cost: float
-    """What the motion costs, its end included."""
+    """Total cost of the motion, terminal cost included."""
     gap: float = 0.0
-    """Where it began anew, the largest difference to what was reached, relative to sizes."""
+    """Largest relative difference between values at a restart of the integration and the values reached there."""
 
     def along(self, piece: Piece) -> tuple[Array, Array]:
-        """Times of an arc and values there: its ends, and the nodes between."""
+        """Return times and values on an arc, at its ends and at the nodes between."""
         inside = (self.times > piece.start) & (self.times < piece.end)
         z = np.column_stack([piece.before, self.z[:, inside], piece.after])
         return np.concatenate([[piece.start], self.times[inside], [piece.end]]), z
 
     def switching_times(self, control: int) -> list[float]:
-        """When one control switches."""
+        """Return the times at which one control switches."""
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
 def replay(solution: Solution, within: Limits | None = None, closely: bool = False) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite or switches without end.
+    """Integrate an extremal again; ``None`` if the motion is not finite or has too many switches.
 
     Parameters
     ----------
     closely
-        Whether to begin anew where flows grow, and to take switching times as they are stated where the switching
-        function vanishes there to the last digits: where it is flat its sign tells fewer of the time.
+        Whether the integration restarts where errors grow, and switching times are taken from the solution where the
+        switching function vanishes within rounding: a flat switching function does not determine its zero accurately.
 
     Raises
     ------
     OutOfTime, TooMuchWork
-        If that takes longer than it may.
+        If the limits of time or work are exceeded.
     """
     within = within or Limits(MOST_SWITCHES, float("inf"))
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
@@ -118,27 +121,27 @@ def replay(solution: Solution, within: Limits | None = None, closely: bool = Fal
 
 @dataclass(frozen=True, eq=False)
 class _Again:
-    """What is needed to integrate a solution again."""
+    """Data of a repeated integration."""
 
     solution: Solution
-    """What the initial costates are taken of, and the nodes."""
+    """Solution whose initial costates and nodes are used."""
     stated: Stated
-    """Arcs of each control as it states them."""
+    """Arcs of each control as the solution states them."""
     settled: list[bool]
-    """Whether the stated arcs of each control stand, for no sign shows its switches."""
+    """Whether the stated arcs of each control are used because no sign shows its switches."""
     by: Integration
-    """The integration."""
+    """Integration of the arcs."""
     anew: list[tuple[float, Array]]
-    """When it begins anew, and from which values."""
+    """Times at which the integration restarts, and the values there."""
     closely: bool
-    """Whether times are taken as stated where no sign tells more digits."""
+    """Whether stated switching times are used where signs are less accurate."""
 
     @property
     def instance(self) -> Instance:
         return self.solution.instance
 
     def replayed(self) -> Replay | None:
-        """Arc by arc; ``None`` where there is no end of switches."""
+        """Integrate arc by arc; ``None`` if the number of switches exceeds its maximum."""
         instance, stations = self.instance, distinct(self.solution.times)
         z, t, end = (
             np.concatenate([instance.initial, self.solution.lam[:, 0]]),
@@ -172,7 +175,7 @@ class _Again:
         return None
 
     def _first_levels(self, z: Array, t: float, end: float) -> tuple[int, ...]:
-        """Levels at the start: where a switching function vanishes, its rate decides."""
+        """Return the levels of the controls at the start; if a switching function vanishes there, its rate decides."""
         instance, found = self.instance, []
         resting = equations(instance, (REST,) * len(self.stated))
         for i, own in enumerate(self.stated):
@@ -187,7 +190,7 @@ class _Again:
         return tuple(found)
 
     def _piece(self, span: Span, spread: Array) -> tuple[Piece, tuple[int, ...]]:
-        """The arc from a time to the next switch, and the levels after it."""
+        """Return the arc from a time to the next switch, and the levels after it."""
         field, start = span.field, span.start
         together = at_once(span, self.settled, self.by.sizes)
         if together is not None:
@@ -215,7 +218,7 @@ class _Again:
         return piece, _with(field.levels, switched, level)
 
     def _stated(self, span: Span, found: float, control: int) -> float:
-        """The stated time of a switch that was found, if its switching function is as good as zero there."""
+        """Return the stated time of a switch if the switching function vanishes there, else the time found."""
         near = min((end for _, end, _ in self.stated[control][:-1]), key=lambda t: abs(t - found), default=found)
         if not span.start < near < span.end:
             return found
@@ -226,7 +229,7 @@ class _Again:
         return near if off <= ROUNDING * size else found
 
     def _stations(self, piece: Piece, nodes: Array) -> tuple[tuple[Array, Array, Array], float]:
-        """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
+        """Return times, values and controls of an arc at its ends and at nodes between, and its running cost."""
         field, rows, sizes = piece.field, len(piece.before), self.by.sizes
         times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
 
@@ -244,12 +247,12 @@ class _Again:
 
 
 def _restarts(solution: Solution, stated: Stated) -> list[tuple[float, Array]]:
-    """Nodes where a flow begins anew, and values (2n,) there: within arcs where it grows, and where singular ones end.
+    """Return restart times and the values (2n,) there: where errors grow within arcs, and at ends of singular arcs.
 
     Parameters
     ----------
     stated
-        Arcs of each control.
+        Arcs of each control as the solution states them.
     """
     times, z = solution.times, np.concatenate([solution.x, solution.lam])
     structure = Structure(tuple(tuple(level for *_, level in row) for row in stated))
@@ -272,16 +275,16 @@ def _restarts(solution: Solution, stated: Stated) -> list[tuple[float, Array]]:
 
 
 def _joined(first: Piece, second: Piece) -> Piece:
-    """Two parts of one arc."""
+    """Return two parts of one arc as a single arc."""
     whole = second.transition @ first.transition
     return replace(second, start=first.start, before=first.before, transition=whole, spread=first.spread)
 
 
 def _spread(piece: Piece, following: Field) -> Array:
-    """How values after an arc, and after the switch that ends it, follow those with which the flow began.
+    """Return derivatives of the values after an arc and its final switch by the initial values of the flow.
 
-    A deviation moves the switch, and for as long the other field acts; where the switching function does not change at
-    a rate there, by how much is not told to first order, and nothing is added.
+    A deviation shifts the switching time, during which the other field acts; if the rate of the switching function
+    vanishes, the shift is not determined to first order, and nothing is added.
     """
     found = piece.transition @ piece.spread
     if piece.switched is None or max(piece.field.kept is not None, following.kept is not None):

@@ -1,4 +1,4 @@
-"""The arcs of each control as a solution states them, and whether any sign could tell them."""
+"""The arcs of each control as a solution states them, and whether signs of switching functions could show them."""
 
 from __future__ import annotations
 
@@ -16,20 +16,21 @@ from satsym.solvers.switching.throttled import shown_by, signs, switched
 from satsym.solvers.switching.trajectory import deciding
 
 UNDECIDED = 1e-9
-"""Relative distance of a switching function from where it switches, at which no sign can be told."""
+"""Relative distance of a switching function from its switching value below which its sign cannot be determined."""
 
 MOSTLY = 0.9
-"""Share of the nodes of an arc at which a control is at its level: a switching time may be stated wrongly."""
+"""Fraction of the nodes of an arc at which a control has to be at a level for the arc to have this level; it is less
+than 1 since a stated switching time may be wrong."""
 
 OFF = 1e-9
-"""Distance of a control from its levels, relative to the width of its range, at which it is singular."""
+"""Distance of a control from its levels, relative to its range, above which it is singular."""
 
 
 Stated = list[list[tuple[float, float, int]]]
 
 
 def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
-    """Start, end and level of each arc of a control, read from a solution: what matters is which are singular."""
+    """Return start, end and level of each arc of a control, read from a solution, mainly to find singular arcs."""
     instance = solution.instance
     low, high = (bounds[control] for bounds in instance.control_set.switching)
     switches = solution.switching_times[shown_by(instance)[control]]
@@ -49,7 +50,7 @@ def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
 
 
 def _on_boundary(solution: Solution, control: int, time: float) -> int | None:
-    """The level of a control that keeps to a boundary then, as events say; ``None`` where it does to none."""
+    """Return the level of a control that keeps a path constraint active at a time, from events; otherwise ``None``."""
     names, found = [one.name for one in solution.instance.model.spec.path_constraints], None
     for event in solution.events:
         constraint = names.index(event.name)
@@ -59,13 +60,13 @@ def _on_boundary(solution: Solution, control: int, time: float) -> int | None:
 
 
 def jump(solution: Solution, time: float) -> Array:
-    """By how much states and costates jump at a time, as a solution states it, shape (2n,)."""
+    """Return the jump of states and costates that a solution states at a time, shape (2n,)."""
     z, places = np.concatenate([solution.x, solution.lam]), np.flatnonzero(solution.times == time)
     return np.asarray(z[:, places[-1]] - z[:, places[0]] if len(places) > 1 else np.zeros(len(z)))
 
 
 def decided_by_none(solution: Solution, control: int) -> bool:
-    """Whether no sign tells where a control switches, although none of its arcs is singular."""
+    """Return whether no sign shows where a control switches, although none of its arcs is singular."""
     low, high = solution.instance.control_set.switching
     if low[control] == high[control]:
         return False
@@ -73,7 +74,7 @@ def decided_by_none(solution: Solution, control: int) -> bool:
 
 
 def indifferent(solution: Solution, control: int) -> bool:
-    """Whether a control may do what it likes all along, as far as H shows, with no singular arc to follow."""
+    """Return whether H leaves a control undetermined along the whole motion, without a singular arc to follow."""
     if solution.instance.model.spec.throttled or undecided(solution, control) < MOSTLY:
         return False
     instance, k = solution.instance, len(solution.times) // 2
@@ -86,7 +87,7 @@ def indifferent(solution: Solution, control: int) -> bool:
 
 
 def undecided(solution: Solution, control: int) -> float:
-    """The share of nodes at which a switching function is at the very value at which the control switches."""
+    """Return the fraction of nodes at which a switching function equals the value at which the control switches."""
     instance = solution.instance
     sigma, weight = signs(instance, solution.times, solution.x, solution.lam)
     margin, sizes = np.abs(np.abs(sigma) - weight), (np.abs(sigma) + weight).max(axis=1)
