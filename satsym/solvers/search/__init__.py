@@ -1,4 +1,4 @@
-"""Extremals found by a direct method: a programme of all states and controls, solved from a few fixed starts.
+"""Extremals found by a direct method: a nonlinear programme of all states and controls, solved from several starts.
 
-:mod:`~satsym.solvers.search.order` tells what is tried after what.
+:mod:`~satsym.solvers.search.order` describes the order in which starts are tried.
 """

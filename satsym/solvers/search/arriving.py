@@ -1,4 +1,8 @@
-"""Motions to the given end, whatever they cost: the miss alone is minimised, from motions that obey their equations."""
+"""Motions that come as close as possible to the given final state, at any cost, by minimisation of the miss.
+
+The miss is the deviation of the motion from the final conditions. The starts are motions that obey the equations of
+motion.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +25,14 @@ from satsym.solvers.search.starts import Plan
 from satsym.solvers.search.transcription import FREE, Function
 
 ARRIVED = 1e-4
-"""Relative miss that the mesh and the minimisation may leave of none."""
+"""Relative miss up to which a motion counts as arriving at the final state; mesh and minimisation may cause it."""
 
 ITERATIONS = 120
-"""Iterations of the interior-point code; where more are needed, hardly any number is enough."""
+"""Maximum number of iterations of the interior-point code. If these do not suffice, more rarely help."""
 
 
 class Missing(Programme):
-    """A programme that minimises half the squared miss of what is asked of the end, each in units of its size."""
+    """Nonlinear programme that minimises half the squared deviation from the final conditions, in scaled units."""
 
     def __post_init__(self) -> None:
         end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + self.sizes.duration
@@ -43,10 +47,10 @@ class Missing(Programme):
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds of the unknowns: none of what is asked of the end.
+        """Return lower and upper bounds of the unknowns, without those that the final conditions would set.
 
-        Controls without bounds have the limit of what the mesh can show: those that could make up for the whole miss
-        within an interval. Beyond it, states jump between the points and no longer obey their equations.
+        Controls without bounds are limited to what the mesh can represent: values that could correct the whole miss
+        within one interval. Beyond this limit, states jump between points and no longer obey the equations of motion.
         """
         low, high = (row.copy() for row in super().bounds)
         variables = slice(self.first_variable, self.first_duration)
@@ -61,18 +65,18 @@ class Missing(Programme):
 
     @cached_property
     def limits(self) -> tuple[Array, Array]:
-        """Lower and upper limits of the rows: none of those at the end."""
+        """Return lower and upper limits of the constraint rows, without limits for the final conditions."""
         low, high = (row.copy() for row in super().limits)
         if "ends" in self.kinds:
             low[self.kinds["ends"].places], high[self.kinds["ends"].places] = -FREE, FREE
         return low, high
 
     def missed_by(self, w: Array) -> Array:
-        """What the end of unknowns misses, in units of its sizes."""
+        """Return the deviations of given unknowns from the final conditions, in scaled units."""
         return self.missed(self._at(w, [self.count]))[:, 0]
 
     def missed(self, y: Array) -> Array:
-        """What the end misses, in units of its sizes, at local variables (l, M)."""
+        """Return the deviations from the final conditions at local variables (l, M), in scaled units."""
         others = self.points.ends(y)
         size = self.sizes.states
         others[: len(self.on_reference)] /= size[self.on_reference, None]
@@ -84,18 +88,18 @@ class Missing(Programme):
         return np.asarray((self.missed(y) ** 2).sum(axis=0)[None] / 2.0)
 
     def objective(self, w: Array) -> float:
-        """Half the squared miss."""
+        """Return half the squared deviation from the final conditions."""
         return float(self._half(self._at(w, [self.count]))[0, 0])
 
     def gradient(self, w: Array) -> Array:
-        """The derivatives of :meth:`objective` by all unknowns."""
+        """Return the derivatives of :meth:`objective` with respect to all unknowns."""
         into, places = self._end_into(self.count)
         found = np.zeros(self.unknowns)
         np.add.at(found, places, self.points.slopes(self._half, self._at(w, [self.count]))[0, :, 0] @ into)
         return found
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
-        """Entries of the second derivatives of the Lagrangian."""
+        """Return the entries of the Hessian of the Lagrangian."""
         self.factor = factor
         return super().hessian(w, multipliers, 0.0)
 
@@ -105,10 +109,10 @@ class Missing(Programme):
 
 
 def arriving(instance: Instance, controls: Controls, meshes: Sequence[Array], plan: Plan, limits: Limits) -> Found:
-    """Where the least miss is found from a plan.
+    """Minimise the deviation from the final conditions from a given plan of a start.
 
-    The plan begins with a motion that obeys its equations: as if nothing were asked of its end, unless it is the
-    straight line to it. Sizes of states are the larger of both.
+    The start is a motion that obeys its equations, found without final conditions, unless the plan is the straight line
+    to the final state. Scales of states are the larger ones of the problems with and without final conditions.
     """
     free = replace(instance, final={})
     duration = first_duration(instance, controls)
@@ -120,16 +124,16 @@ def arriving(instance: Instance, controls: Controls, meshes: Sequence[Array], pl
 
 
 def missed(found: Found) -> Array:
-    """What the end of a motion misses, in units of its sizes."""
+    """Return the deviations of a motion from the final conditions, in scaled units."""
     assert isinstance(found.programme, Missing)
     return found.programme.missed_by(found.unknown)
 
 
 def distance(found: Found) -> float:
-    """The largest miss of the end of a motion, in units of its size."""
+    """Return the largest deviation of a motion from the final conditions, in scaled units."""
     return float(np.abs(missed(found)).max(initial=0.0))
 
 
 def arrived(found: Found) -> bool:
-    """Whether a motion arrives, as far as can be told."""
+    """Return whether a motion meets the final conditions within the accuracy of the mesh."""
     return found.solved and distance(found) <= ARRIVED

@@ -1,4 +1,4 @@
-"""Starts, solved on a coarse mesh one after the other, and what motions that last a given time cost there."""
+"""Solutions from a list of starts on a coarse mesh, and costs of motions of given durations on this mesh."""
 
 from __future__ import annotations
 
@@ -24,30 +24,33 @@ from satsym.solvers.search.starts import Plan
 from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
-"""Starts that are tried at most."""
+"""Maximum number of starts."""
 
 ITERATIONS, ASTRAY = 300, 50
-"""Iterations of the interior-point code for a start; and for a competitor on a bent way to a drawn end, which need not
-lead anywhere: such a motion is found soon or hardly ever."""
+"""Maximum number of iterations of the interior-point code for a start, and for a competitor from a curved path to a
+random final state. The latter need not lead to a solution, and is found soon or hardly ever."""
 
 WEAK, NEARLY_WITHIN = 7, 1.5
-"""Starts after which those come that begin without bounds of controls, and the largest controls of such a motion,
-relative to their bounds, from which one within these is looked for."""
+"""Number of starts before those that ignore the bounds of controls; and the largest control of such a motion, relative
+to its bound, up to which a motion within the bounds is searched for from it."""
 
 PRICED = 3
-"""Starts from which what a given duration costs is looked for: hardly any matter where it can be reached at all."""
+"""Maximum number of starts that are tried to find the cost of a given duration. If the final state can be reached in
+it, the first ones usually suffice."""
 
 EDGE = 1e-2
-"""By what share a free duration may be off the longest or the shortest that is looked at, to be taken for that."""
+"""Relative distance of a free duration from the longest or shortest allowed one, within which it counts as being at
+this limit."""
 
 INTERVALS, FEWEST = 40, 8
-"""Number of intervals of the coarse mesh, and the least number in a phase."""
+"""Number of intervals of the coarse mesh, and minimum number in a phase."""
 
 FIRST_SMOOTHINGS = (1e-1, 1e-2, 1e-3)
-"""Smoothings of norms on the coarse mesh: fuel alone decides little between bounds, and effort much."""
+"""Successive smoothing parameters of norms on the coarse mesh, largest first: fuel cost alone determines little between
+bounds, and a quadratic term determines much."""
 
 SIMILAR = 1e-4
-"""Relative difference of costs on a coarse mesh that may be of one motion."""
+"""Relative difference of costs on a coarse mesh below which two motions count as the same."""
 
 
 def started(
@@ -59,14 +62,14 @@ def started(
     weak: bool = False,
     first: int = 0,
 ) -> Iterator[tuple[Plan, Found]]:
-    """What starts come to on a coarse mesh, which is even unless the way of a motion is known.
+    """Yield plans and the solutions they lead to on a coarse mesh, even unless a known motion grades it.
 
     Parameters
     ----------
     weak
-        Whether some begin without bounds of controls.
+        Whether some starts ignore the bounds of controls at first.
     first
-        Number of the start to begin with; those before it are left out.
+        Index of the first start; earlier ones are skipped.
     """
     controls = controls_of(instance)
     if controls is None:
@@ -98,13 +101,14 @@ def started(
 def _less_smoothed(
     programmes: Sequence[Programme], plan: Plan, limits: Limits, most: int, known: list[tuple[float, Found]]
 ) -> Found:
-    """The solution of the last of several programmes that differ in smoothing, each begun at that of the one before.
+    """Return the solution of the last of several programmes of decreasing smoothing, each started from the previous.
 
-    Of the last that is solved: next to bounds, what is hardly smoothed may take very many iterations.
+    If a programme fails, the solution of the one before it is returned: near bounds, little smoothing may need very
+    many iterations.
 
     Parameters
     ----------
-    known
+    Costs of the first programme and the solutions they led to; the new solution is appended.
         Costs of the first programme and what they led to; what is found is added.
     """
     start = starts.begun(programmes[0], plan)
@@ -145,7 +149,7 @@ def _less_smoothed(
 
 @dataclass(frozen=True)
 class Priced:
-    """What a motion costs on a coarse mesh that lasts as long as is asked, and the unit in which costs are measured."""
+    """Cost of a motion of given duration on a coarse mesh, and the unit of costs."""
 
     duration: float
     cost: float
@@ -153,12 +157,12 @@ class Priced:
 
 
 def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float]) -> list[Priced]:
-    """What motions cost that last so long; none where one of these durations is not solved after a few starts.
+    """Return costs of motions of given durations; an empty list if one duration is not solved from the first starts.
 
     Parameters
     ----------
     shares
-        Of the first guess of the duration.
+        Durations relative to the initial guess of the duration.
     """
     controls = controls_of(instance)
     if controls is None:
@@ -176,13 +180,13 @@ def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float
 
 
 def first_motion(instance: Instance, limits: Limits, most: int = STARTS) -> Motion | None:
-    """What the first of so many starts that is solved comes to, on a coarse mesh."""
+    """Return the motion from the first of several starts that is solved on a coarse mesh, or ``None``."""
     found = next((one for _, one in islice(started(instance, limits, ""), most) if one.solved), None)
     return None if found is None else motion(found)
 
 
 def at_edge(found: Found) -> bool:
-    """Whether a free duration is next to the shortest or the longest that is looked at: then no minimum is there."""
+    """Return whether a free duration is at its shortest or longest allowed value, so that no minimum is there."""
     programme = found.programme
     if programme.instance.tf is not None or programme.phases > 1:
         return False
@@ -191,5 +195,5 @@ def at_edge(found: Found) -> bool:
 
 
 def same(one: float, other: float) -> bool:
-    """Whether two costs on a coarse mesh may be of one motion."""
+    """Return whether two costs on a coarse mesh may belong to the same motion."""
     return abs(one - other) <= SIMILAR * max(abs(one), abs(other))

@@ -1,10 +1,10 @@
-"""Controls as a programme has them: rates are smooth in these, also where a norm, a magnitude or an angle is in them.
+"""Variables of a nonlinear programme that replace controls, so that rates are smooth functions of these variables.
 
-Rates that contain the norm of a vector are ``a + B u + c |u|``, and those that contain an angle are
-``a + b cos(u) + c sin(u)``. Both are sums of the rates at a few fixed controls, the nodes, with weights that are linear
-in the vector and its norm, or in cosine and sine. The norm is a variable s of its own with ``|u|^2 <= s^2``, and so are
-cosine and sine with ``cos^2 + sin^2 <= 1``: at an optimum both hold with equality, or convexity says that nothing is
-gained.
+Rates that contain the norm of a vector are ``a + B u + c |u|``, and those that contain an angle are ``a + b cos(u) + c
+sin(u)``. Both are sums of the rates at a few fixed controls, the nodes, with weights that are linear in the vector and
+its norm, or in cosine and sine. The norm is a variable s of its own with ``|u|^2 <= s^2``, and so are cosine and sine
+with ``cos^2 + sin^2 <= 1``: at an optimum both hold with equality, or convexity shows that the relaxation does not
+lower the cost.
 """
 
 from __future__ import annotations
@@ -19,25 +19,26 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 DRAWN, EQUAL_RATES = 6, 1e-9
-"""Random controls at which rates by nodes are compared with rates, and the share by which they may differ."""
+"""Number of random controls at which rates from nodes are compared with exact rates, and the largest relative
+difference that counts as rounding."""
 
 Node = tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class Lift:
-    """Controls that are replaced by variables in which rates are linear.
+    """Replacement of controls by variables in which rates are linear.
 
     Attributes
     ----------
     places
-        Of these controls in the model's order.
+        Indices of these controls in the model's order.
     variables
-        Places of what replaces them, in the order of the columns of `weights` but its first.
+        Indices of the replacing variables, in the order of the columns of `weights` after its first.
     nodes
         Values of these controls, one row each.
     weights
-        Row by row the weights of the nodes: a constant, then factors of the variables.
+        Weights of the nodes, one row each: a constant, then the factors of the variables.
     """
 
     places: tuple[int, ...]
@@ -48,7 +49,7 @@ class Lift:
 
 @dataclass(frozen=True)
 class Norm:
-    """A bound on the length of variables: not above `outer` or the variable `spot`, and not below `inner`."""
+    """Bounds on the norm of some variables: at most `outer` or the variable `spot`, and at least `inner`."""
 
     places: tuple[int, ...]
     inner: float
@@ -58,12 +59,12 @@ class Norm:
 
 @dataclass(frozen=True)
 class Controls:
-    """The variables of a programme that stand for controls.
+    """The variables of a nonlinear programme that represent controls.
 
     Attributes
     ----------
     given
-        How many controls there are; the first variables are these.
+        Number of controls; they are the first variables.
     lower, upper
         Bounds of all variables.
     """
@@ -74,18 +75,18 @@ class Controls:
     lifts: tuple[Lift, ...] = ()
     norms: tuple[Norm, ...] = ()
     angles: dict[int, tuple[int, int]] = field(default_factory=dict)
-    """Place of an angle -> those of its cosine and its sine."""
+    """Index of an angle -> indices of its cosine and its sine."""
     affine: bool = False
-    """Whether rates are linear in all controls, apart from magnitudes."""
+    """Whether rates are linear in all controls, except for their magnitudes."""
 
     @property
     def count(self) -> int:
-        """How many variables there are."""
+        """Return the number of variables."""
         return len(self.lower)
 
     @property
     def loosened(self) -> Controls | None:
-        """The variables without bounds; ``None`` where there are none, or only they keep the cost from falling."""
+        """Return the variables without bounds; ``None`` if there are none, or they are needed for a finite cost."""
         if self.lifts or self.angles or any(norm.spot is not None for norm in self.norms):
             return None
         bounded = bool(self.norms) or bool(np.isfinite(self.lower).any() or np.isfinite(self.upper).any())
@@ -93,7 +94,7 @@ class Controls:
         return replace(self, lower=-endless, upper=endless, norms=()) if bounded else None
 
     def excess(self, v: Array) -> float:
-        """The largest of variables (count, M), relative to their bounds: above one outside them."""
+        """Return the largest of the variables (count, M) relative to their bounds; greater than 1 outside these."""
         found = [0.0]
         for row, low, high in zip(v, self.lower, self.upper, strict=True):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
@@ -103,12 +104,12 @@ class Controls:
 
     @property
     def linear(self) -> set[int]:
-        """Places of variables in which rates are linear: they have no second derivative by two of them."""
+        """Return the indices of variables in which rates are linear, so that second derivatives vanish."""
         lifted = {place for lift in self.lifts for place in (*lift.places, *lift.variables)}
         return set(range(self.count)) if self.affine else lifted
 
     def nodes(self, v: Array) -> list[tuple[Array, Array]]:
-        """Controls (m, M) at which rates are asked for, and the weights (M,) with which they are added.
+        """Return controls (m, M) at which rates are evaluated, and the weights (M,) of these rates in their sum.
 
         Parameters
         ----------
@@ -129,14 +130,14 @@ class Controls:
         return whole
 
     def controls(self, v: Array) -> Array:
-        """The controls that variables stand for, shape (m, M)."""
+        """Return the controls that the variables represent, shape (m, M)."""
         u = np.array(v[: self.given])
         for place, (cosine, sine) in self.angles.items():
             u[place] = np.arctan2(v[sine], v[cosine])
         return u
 
     def variables(self, u: Array) -> Array:
-        """The variables that stand for controls, shape (count, M)."""
+        """Return the variables that represent given controls, shape (count, M)."""
         v = np.zeros((self.count, u.shape[1]))
         v[: self.given] = u
         for norm in self.norms:
@@ -148,7 +149,7 @@ class Controls:
 
 
 def controls_of(instance: Instance) -> Controls | None:
-    """The variables of an instance; ``None`` where rates are not what they need to be for these."""
+    """Return the variables of an instance; ``None`` if its rates do not have the form that they need."""
     within, m = instance.control_set, len(instance.model.spec.controls)
     parts = within.parts if within.kind == "product" else ((tuple(range(m)), within),)
     lower, upper = np.full(m, -np.inf), np.full(m, np.inf)
@@ -160,7 +161,7 @@ def controls_of(instance: Instance) -> Controls | None:
 
 
 class _Made:
-    """Variables as they are added, set by set."""
+    """Collector of variables, to which control sets are added one by one."""
 
     def __init__(self, instance: Instance, lower: list[float], upper: list[float]) -> None:
         self.instance, self.lower, self.upper = instance, lower, upper
@@ -204,7 +205,7 @@ class _Made:
                     self.lower[place], self.upper[place] = -part.radius, part.radius
 
     def _with_norm(self, places: tuple[int, ...], inner: float, outer: float) -> None:
-        """A lift of a vector whose norm counts."""
+        """Add the norm of a vector as a variable, for rates that depend on it."""
         spot = self.new(inner, outer)
         size, k = (outer if np.isfinite(outer) else 1.0), len(places)
         nodes = [np.zeros(k), *(sign * size * row for row in np.eye(k) for sign in (1.0, -1.0))]
@@ -220,7 +221,7 @@ class _Made:
 
 
 def rates(instance: Instance, t: Array, x: Array, u: Array, p: tuple[Any, ...]) -> Array:
-    """Rates of the states and of the cost, shape (n + 1, M)."""
+    """Return the rates of the states and of the cost, shape (n + 1, M)."""
     model, n = instance.model, len(x)
     kind = np.result_type(t, x, u, *p)
     found = np.empty((n + 1, x.shape[1]), kind)
@@ -230,14 +231,14 @@ def rates(instance: Instance, t: Array, x: Array, u: Array, p: tuple[Any, ...]) 
 
 
 def _drawn(instance: Instance) -> tuple[Array, Array, np.random.Generator]:
-    """Times, states about the start, and the random numbers that go on."""
+    """Return times, random states about the initial state, and the random number generator."""
     rng, start = np.random.default_rng(0), np.array(instance.initial)
     x = start[:, None] * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (len(start), DRAWN)))
     return np.full(DRAWN, instance.t0), x, rng
 
 
 def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
-    """Whether rates are no linear function of these controls: what is left is their norm."""
+    """Return whether rates are not linear in these controls, so that they depend on their norm."""
     t, x, _ = _drawn(instance)
     u = np.zeros((len(instance.model.spec.controls), DRAWN))
     with np.errstate(all="ignore"):
@@ -250,7 +251,7 @@ def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
 
 
 def _reproduces(instance: Instance, controls: Controls) -> bool:
-    """Whether rates by nodes are rates."""
+    """Return whether the weighted sum of rates at nodes reproduces the rates of the model."""
     t, x, rng = _drawn(instance)
     u = rng.uniform(-1.0, 1.0, (controls.given, DRAWN))
     low, high = controls.lower[: controls.given, None], controls.upper[: controls.given, None]

@@ -1,4 +1,4 @@
-"""A first guess of a duration that is free: how long controls take to move the states as far as they are to go."""
+"""Initial guess of a free duration: the time in which constant controls move the states to their final values."""
 
 from __future__ import annotations
 
@@ -12,27 +12,28 @@ from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.sizes import flows, resting, wanted
 
 STEPS = 400
-"""In which each constant control is followed."""
+"""Number of steps for which each constant control is simulated."""
 
 FIRST, LONGEST_STEP, SHORTER = 0.01, 0.1, 0.3
-"""Share of the time of the quickest state that the first step takes, share of a state's way that a step goes at most,
-and by how much a step is shortened that goes further."""
+"""First step as a fraction of the time scale of the fastest state; largest change of a state in a step, relative to its
+required change; factor that shortens a step with a larger change."""
 
 FAR_ENOUGH, SMALLEST_ERROR, LARGEST_ERROR = 0.9, 1e-3, 1e-2
-"""Share of the way that is far enough; between which errors of a step it keeps its length."""
+"""Fraction of the required change of a state that counts as sufficient. Smallest and largest relative error of a step
+between which the step size is kept."""
 
 SWINGING = 10.0
-"""Time scales of a motion that no constant control moves far enough."""
+"""Number of time scales of the motion that are guessed if no constant control moves any state far enough."""
 
 SCALES = 10.0 ** np.arange(-12.0, 7.0)
-"""Magnitudes of controls without bounds that are looked at."""
+"""Magnitudes that are tried for controls without bounds."""
 
 
 def first_duration(instance: Instance, controls: Controls) -> float:
-    """The duration that is given or guessed, or else the least in which constant controls have moved every state.
+    """Return the given or guessed duration, otherwise the time in which constant controls can move every state.
 
-    Where they move some states far enough and others not, it is no less than the time scale of the motion. Where none
-    of them moves any state far enough, the motion has to swing, for several of its time scales.
+    If only some states are moved far enough, the guess is at least the time scale of the motion. If no state is, the
+    motion has to swing, and several time scales are guessed.
     """
     if instance.tf is not None:
         return instance.tf - instance.t0
@@ -49,12 +50,12 @@ def first_duration(instance: Instance, controls: Controls) -> float:
 
 
 def _time_scale(instance: Instance) -> float:
-    """The time scale of the motion; one where its slopes have no numbers."""
+    """Return the time scale of the motion; 1 if its linearisation is not finite."""
     return tried(lambda: time_scale(instance)) or 1.0
 
 
 def _moved(instance: Instance, controls: Controls) -> Array:
-    """When each state that is to move has moved far enough under any constant control; infinite where none does it."""
+    """Return the time at which any constant control has moved each state far enough; infinite if none does."""
     start = np.array(instance.initial)
     goal = np.abs(wanted(instance, instance.t0) - start)
     first = _reached(instance, controls, np.array(_constant(instance, controls)).T, start, goal)
@@ -62,7 +63,7 @@ def _moved(instance: Instance, controls: Controls) -> Array:
 
 
 def _affordable(instance: Instance, controls: Controls, k: int) -> float:
-    """The power of ten at which a control alone costs about as much as time does; one where time costs nothing."""
+    """Return the power of ten at which a control alone costs about as much as time; 1 if time costs nothing."""
     t, x = np.full(len(SCALES) + 1, instance.t0), np.repeat(np.array(instance.initial)[:, None], len(SCALES) + 1, 1)
     v = np.zeros((controls.count, len(SCALES) + 1))
     v[k, 1:] = SCALES
@@ -73,7 +74,7 @@ def _affordable(instance: Instance, controls: Controls, k: int) -> float:
 
 
 def _constant(instance: Instance, controls: Controls) -> list[Array]:
-    """Controls at rest, and each alone at both of its bounds, or where it costs as much as time if it has none."""
+    """Return zero controls, and each control alone at its bounds or, if unbounded, where it costs as much as time."""
     rest = resting(controls)
     found = [rest]
     for k in range(controls.count):
@@ -90,7 +91,7 @@ def _constant(instance: Instance, controls: Controls) -> list[Array]:
 
 
 def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goal: Array) -> Array:
-    """When each state has moved far enough under any of many constant controls (k, M); infinite where none is seen."""
+    """Return the time at which any of many constant controls (k, M) has moved each state far enough; else infinite."""
     size = np.maximum(np.abs(start), np.nan_to_num(goal))
     size[size == 0.0] = np.inf
     positive = np.array([one.positive for one in instance.model.spec.states])

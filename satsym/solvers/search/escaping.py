@@ -1,7 +1,7 @@
-"""Whether motions escape to infinity within their time, and the cost falls without end on the way.
+"""Test whether motions can become unbounded within their time while the cost falls without limit.
 
-Where nothing is asked of the end every control is admissible. Constant controls are made larger until the motion is
-infinite before its time is up; from just below that size on, the state at the end grows beyond all bounds.
+If there are no final conditions, every control is admissible. Constant controls are increased until the motion becomes
+infinite before the final time; just below this magnitude, the final state grows without limit.
 """
 
 from __future__ import annotations
@@ -14,33 +14,35 @@ from satsym.instance.unknowns import Place
 from satsym.solvers.simulation.together import costs_together
 
 SIZES = np.geomspace(1e-2, 1e4, 13)
-"""Sizes of constant controls that are tried."""
+"""Magnitudes of constant controls that are tried."""
 
 DRAWN, STEPS = 8, 400
-"""Directions that are drawn, besides those of single controls, and Runge-Kutta steps with which all are tried at once.
-"""
+"""Number of random directions in addition to those of single controls, and number of Runge-Kutta steps of the
+simultaneous simulations."""
 
 LIKELY = 3
-"""Directions along which motions are followed more accurately, at most."""
+"""Maximum number of directions in which motions are simulated more accurately."""
 
 INFINITE = 1e14
-"""Size of a state that counts as infinite."""
+"""Magnitude of a state above which it counts as infinite."""
 
 HALVINGS, DECADES = 24, 4
-"""Halvings that find the size from which on motions escape, and distances to it, each a tenth of the one before."""
+"""Number of bisections for the magnitude at which motions become infinite, and number of distances from it at which
+costs are compared, each a tenth of the previous one."""
 
 TENFOLD, LAST = 10.0, 3
-"""Factor by which the fall of the cost grows from one of these to the next, at least, for the last ones."""
+"""Minimum factor by which the decrease of the cost grows from one of these distances to the next, and the number of the
+last distances for which this is required."""
 
 TOLERANCE = 1e-9
-"""Error that the integration allows, relative and absolute."""
+"""Relative and absolute tolerance of the integration."""
 
 REMEDY = "constrain the final state, or bound the control"
-"""What keeps motions from escaping."""
+"""Advice that is given if motions become unbounded."""
 
 
 def escape(instance: Instance) -> str:
-    """Why no control is the best one, where motions escape and cost ever less; empty where none is seen to."""
+    """Return why there is no optimum if motions become unbounded at ever lower cost; otherwise an empty string."""
     if not _admissible(instance):
         return ""
     for direction, finite, infinite in _likely(instance)[:LIKELY]:
@@ -55,7 +57,7 @@ def escape(instance: Instance) -> str:
 
 
 def _admissible(instance: Instance) -> bool:
-    """Whether the start and the duration are given, and nothing is asked of the end, of the way or of controls."""
+    """Return whether initial state and duration are given, and final states, controls and path unconstrained."""
     spec = instance.model.spec
     asked = instance.final or instance.ranges or spec.multipliers or spec.terminal_inequalities or spec.in_arcs
     chosen = any(one.place is not Place.PARAMETER for one in instance.free)
@@ -63,7 +65,7 @@ def _admissible(instance: Instance) -> bool:
 
 
 def _likely(instance: Instance) -> list[tuple[Array, float, float]]:
-    """Directions of constant controls, a size with which motions are finite, and the next, with which they are not."""
+    """Return directions of constant controls with the last finite and the first infinite magnitude of each."""
     m = len(instance.model.spec.controls)
     drawn = np.random.default_rng(0).normal(size=(DRAWN, m))
     directions = np.concatenate([drawn / np.linalg.norm(drawn, axis=1)[:, None], np.eye(m), -np.eye(m)])
@@ -80,7 +82,7 @@ def _likely(instance: Instance) -> list[tuple[Array, float, float]]:
 def _along(
     instance: Instance, direction: Array, finite: float, infinite: float
 ) -> tuple[list[float], list[float]] | None:
-    """Sizes of a control and costs that fall ever faster as it comes near to where motions escape, else ``None``."""
+    """Return magnitudes of a control and costs that fall without limit near the critical one, otherwise ``None``."""
     low, high, still = finite, infinite, _cost(instance, finite * direction)
     if np.isnan(still) or not np.isnan(_cost(instance, infinite * direction)):
         return None
@@ -95,7 +97,7 @@ def _along(
 
 
 def _cost(instance: Instance, control: Array) -> float:
-    """The cost of a constant control; NaN where the motion is infinite before its time is up."""
+    """Return the cost of a constant control; NaN if the motion becomes infinite before the final time."""
     from scipy.integrate import solve_ivp
 
     model, p, u = instance.model, instance.parameters, tuple(control.tolist())

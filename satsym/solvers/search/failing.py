@@ -1,4 +1,4 @@
-"""Why a search has no answer: longer is always cheaper, motions escape, or the end is out of reach."""
+"""Reasons why a search finds no solution: no optimal duration, unbounded motions, or an unreachable final state."""
 
 from __future__ import annotations
 
@@ -28,42 +28,43 @@ from satsym.solvers.switching.throttled import signs, switched
 from satsym.status import Status
 
 Reason = tuple[Status, str]
-"""The status of an instance without an answer, and a message."""
+"""Status of an instance without a solution, and the message that explains it."""
 
 BETWEEN, FAINT_SLOPE, LASTING = 0.05, 1e-2, 0.35
-"""Share of the width of its range by which a norm is off its bounds, share of the cost of a norm below which its
-switching function decides nothing, and share of the time for which nothing decides it."""
+"""Minimum distance of a norm from its bounds, as a fraction of its range, at which it counts as intermediate. Magnitude
+of its switching function, relative to the cost of the norm, below which the control is undetermined. Fraction of the
+duration for which this has to last."""
 
 LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
 FAR_LONGER = (128.0, 512.0, 2048.0)
-"""Multiples of the first guess of a free duration at which costs are looked at where no extremal is found: the last
-ones where they fall all along, because a weight on time may only tell where the guess is far too short."""
+"""Multiples of the initial guess of a free duration at which costs are compared if no extremal is found. The last ones
+are used if costs fall for all others, because a weight on time may only show there if the guess is far too short."""
 
 FAR_OFF = 0.1
-"""Relative miss of an end above which hardly any other start arrives."""
+"""Relative distance from the final state above which other starts hardly ever arrive."""
 
 ENDLESS, EVEN = 1e-2, 1e-7
-"""By what share of it the cost falls from each duration to a longer one where nothing keeps that from growing, and the
-share of it, or of the unit of costs, by which costs differ at least that are not one."""
+"""Minimum relative decrease of the cost from each duration to a longer one, if nothing limits the duration. Minimum
+relative difference of two costs that count as different, also in units of the cost."""
 
 INTERVALS = (40, 80)
-"""Intervals of the meshes on which the least violation is looked for."""
+"""Number of intervals of the meshes on which the smallest violation of the path constraints is computed."""
 
 REMAINING, UNAVOIDABLE = 0.5, 1e-6
-"""Share of the violation on the coarse mesh that is left on the fine one, and share of the constraint's size, above
-which it is unavoidable."""
+"""Minimum ratio of the violation on the fine mesh to that on the coarse mesh, and minimum violation relative to the
+constraint's magnitude, for which path constraints count as contradictory."""
 
 PUSHING = 1e-2
-"""Share of the largest multiplier from which on a constraint stands against the others."""
+"""Multiplier, relative to the largest, above which a constraint is named as part of a contradiction."""
 
 
 def why(instance: Instance, limits: Limits, early: bool = False) -> Reason:
-    """The status of an instance of which no start leads to an extremal, and a message.
+    """Return the status of an instance for which no start leads to an extremal, and a message.
 
     Parameters
     ----------
     early
-        Whether other starts are left: then only an end that is missed by far counts as out of reach.
+        Whether other starts have not been tried yet; then only an end that is far from reached counts as unreachable.
     """
     if limits.late:
         return Status.TIME_LIMIT, "the time limit was reached before an extremal was found"
@@ -93,13 +94,13 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> Reason:
 
 
 def _jumping(controls: list[str]) -> str:
-    """What is said of controls whose Hamiltonian may have several minimisers."""
+    """Return the message for controls whose Hamiltonian may have several minimisers."""
     advice = "if two of them remain equally good, there is no optimum (chattering)"
     return f"H may have several minimisers in {', '.join(controls)}, and {advice}"
 
 
 def _endless(instance: Instance, limits: Limits) -> Reason | None:
-    """Why no duration is the cheapest; ``None`` where costs at some durations do not show that."""
+    """Return why no duration is the cheapest, or ``None`` if costs at several durations do not show it."""
     longer, shorter = (coarse.costs_by_duration(instance, limits, shares) for shares in (LONGER, SHORTER))
     both = longer + shorter
     if longer and shorter and not any(_clearly_less(a, b) for a in both for b in both):
@@ -114,9 +115,9 @@ def _endless(instance: Instance, limits: Limits) -> Reason | None:
 
 
 def _always_cheaper(instance: Instance, longer: list[coarse.Priced], limits: Limits) -> bool:
-    """Whether each duration is clearly cheaper than the one before, and none cheaper than the longest of all.
+    """Return whether each longer duration is clearly cheaper, and none is cheaper than the longest of all.
 
-    Those that are so long that the coarse mesh does not resolve them may have no costs, or too high ones.
+    Durations that the coarse mesh does not resolve may have no costs, or too high ones.
     """
     if not longer or not all(_clearly_less(b, a, ENDLESS) for a, b in pairwise(longer)):
         return False
@@ -125,7 +126,7 @@ def _always_cheaper(instance: Instance, longer: list[coarse.Priced], limits: Lim
 
 
 def _clearly_less(one: coarse.Priced, than: coarse.Priced, share: float = EVEN) -> bool:
-    """Whether a motion costs less than another by that share of it, and by more than rounding leaves."""
+    """Return whether a motion costs less than another by a given fraction of the cost, and by more than rounding."""
     return one.cost < than.cost - max(share * abs(than.cost), EVEN * than.unit)
 
 
@@ -138,7 +139,7 @@ def _listed(tried: list[coarse.Priced]) -> str:
 
 
 def _undecided(instance: Instance, limits: Limits) -> str:
-    """What is said where norms are between their bounds for long: there no law is known."""
+    """Return the message for norms that stay between their bounds for long, where no control law is known."""
     spec = instance.model.spec
     if not spec.throttled:
         return ""
@@ -163,7 +164,7 @@ def _undecided(instance: Instance, limits: Limits) -> str:
 
 
 class _Eased(Programme):
-    """A programme that minimises its last unknown: by which share of their sizes path constraints may be positive."""
+    """Nonlinear programme that minimises its last unknown, the relative violation of the path constraints."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -172,7 +173,7 @@ class _Eased(Programme):
         self.held = np.arange(path.first, path.first + len(path.upper))
 
     def begun(self) -> Array:
-        """Unknowns of the straight line, eased as much as that needs."""
+        """Return unknowns of the straight line to the final state, with the violation that this line needs."""
         w = starts.begun(self, starts.Plan())
         y, _, _ = self._local(np.append(w, 0.0))
         n, given = self.points.states, self.controls.given
@@ -183,51 +184,51 @@ class _Eased(Programme):
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds of the unknowns."""
+        """Return lower and upper bounds of the unknowns."""
         low, high = super().bounds
         return np.append(low, 0.0), np.append(high, FREE)
 
     def objective(self, w: Array) -> float:
-        """The last unknown."""
+        """Return the last unknown, the relative violation of the path constraints."""
         return float(w[-1])
 
     def gradient(self, w: Array) -> Array:
-        """The derivatives of :meth:`objective` by all unknowns."""
+        """Return the derivatives of :meth:`objective` with respect to all unknowns."""
         return np.append(np.zeros(self.unknowns - 1), 1.0)
 
     def values(self, w: Array) -> Array:
-        """The rows of the constraints, shape (m,), path constraints being eased by the last unknown."""
+        """Return the constraint rows, shape (m,), with path constraints relaxed by the last unknown."""
         found = super().values(w)
         found[self.held] -= w[-1] * self.room
         return found
 
     def jacobian(self, w: Array) -> Array:
-        """Entries of the rows' derivatives, at the places of :attr:`jacobian_places`."""
+        """Return the entries of the constraint Jacobian, at the positions of :attr:`jacobian_places`."""
         return np.concatenate([super().jacobian(w), -self.room])
 
     @cached_property
     def jacobian_places(self) -> tuple[Places, Places]:
-        """Rows and columns of :meth:`jacobian`."""
+        """Return rows and columns of the entries of :meth:`jacobian`."""
         rows, columns = super().jacobian_places
         return np.concatenate([rows, self.held]), np.append(columns, np.full(len(self.held), self.unknowns - 1))
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
-        """Second derivatives of the Lagrangian: the objective is linear."""
+        """Return the Hessian of the Lagrangian; the objective is linear and does not contribute."""
         return super().hessian(w, multipliers, 0.0)
 
 
 def contradiction(instance: Instance, limits: Limits) -> str:
-    """What stands against each other where no motion of a convex problem is admissible; empty where that is not shown.
+    """Return the path constraints that no motion of a convex problem can satisfy together; empty if there are none.
 
-    The least by which one of the path constraints is violated: where motion and constraints are convex that is a convex
-    programme, whose solution leaves no other.
+    The largest violation of a path constraint is minimised. If motion and constraints are convex, this is a convex
+    programme, so that its minimum is global.
 
     Parameters
     ----------
     instance
-        With path constraints.
+        Instance with path constraints.
     limits
-        When to give up.
+        Limits of time and work.
     """
     controls = controls_of(instance)
     if controls is None or instance.tf is None or not convex(instance):

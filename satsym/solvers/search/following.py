@@ -1,4 +1,4 @@
-"""Motions on a coarse mesh followed on finer ones: what each comes to beside an answer, until its cost settles."""
+"""Refinement of motions from a coarse mesh on finer meshes, until their costs converge or exceed that of an answer."""
 
 from __future__ import annotations
 
@@ -20,41 +20,42 @@ from satsym.solvers.search.programme import Programme
 Answer = TypeVar("Answer")
 
 BESIDE, ON_FINER_MESH = 120, 200
-"""Iterations of the interior-point code for a competitor, and for a finer mesh."""
+"""Maximum number of iterations of the interior-point code for a competitor, and on a finer mesh."""
 
 MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
-"""Number of finer meshes at most, share of the work that those of one start may take, relative change of cost from one
-to the next at which they end, and smoothings of norms on each."""
+"""``MESHES`` is the maximum number of finer meshes; ``FINER`` the fraction of the work that those of one start may
+take; ``SETTLED_COST`` the relative change of the cost between meshes below which refinement ends; ``SMOOTHINGS`` are
+the smoothing parameters of norms on each mesh."""
 
 FALLING, RESOLVED, LOST, UNCERTAIN = 1e-2, 1e-2, 50.0, 10.0
-"""A motion that costs more than an answer is followed as long as each finer mesh makes it cheaper by the share FALLING,
-but not where the residual of its coarse mesh, relative to the sizes of states, is at most RESOLVED. None is followed
-further whose residual is above LOST on a finer mesh: it steps over something, such as the centre of a planet. A cost is
-uncertain by UNCERTAIN times its last change."""
+"""A motion that costs more than an answer is refined as long as each mesh lowers its cost by the fraction ``FALLING``,
+unless the residual on its coarse mesh, relative to the magnitudes of states, is at most ``RESOLVED``. A motion whose
+residual exceeds ``LOST`` on a finer mesh is not refined: it steps over a singularity, such as the centre of a planet.
+The error of a cost is estimated as ``UNCERTAIN`` times its last change."""
 
 
 def part(limits: Limits) -> Limits:
-    """Limits for the finer meshes of one start, which leave work for the others."""
+    """Return limits for the finer meshes of one start, which leave work for the other starts."""
     return replace(limits, work=min(limits.work, limits.meter.spent + FINER * limits.work))
 
 
 def followed(
     found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None]
 ) -> tuple[float, Answer | None, bool]:
-    """What a motion on a coarse mesh comes to beside an answer, and an extremal near it if it seems cheaper.
+    """Return the refined cost of a motion from a coarse mesh, and an extremal near it if it seems cheaper.
 
-    A motion that costs more is solved on finer meshes as long as these make it much cheaper. One that costs less, and
-    whose cost finer meshes hardly change, is cheaper even if no extremal is found near it.
+    A motion that costs more than the answer is refined as long as finer meshes lower its cost much. One that costs
+    less, with a cost that hardly changes on finer meshes, is cheaper even if no extremal is found near it.
 
     Returns
     -------
     float
-        The cost. NaN where the motion seems to be cheaper, but no mesh settles that.
+        The cost. NaN if the motion seems cheaper, but its cost does not converge.
     Answer
-        The extremal, if one was looked for and found.
+        The extremal, ``None`` if none was looked for or found.
     bool
-        Whether the cost is NaN although the last mesh resolves the motion. What no mesh resolves obeys no equations,
-        so that it is no evidence of anything cheaper.
+        Whether the cost is NaN although the last mesh resolves the motion. A motion that no mesh resolves does not obey
+        its equations, and is no evidence of a lower cost.
     """
     margin, costs, last = SIMILAR * abs(cost), list[float](), found
     meshes, _ = refined(found)
@@ -82,7 +83,7 @@ def followed(
 
 
 def finer(found: Found, limits: Limits) -> Iterator[Found]:
-    """What was found, on meshes that are ever finer."""
+    """Yield a solution, and its refinements on successively finer meshes."""
     yield found
     for number in range(MESHES):
         meshes, _ = refined(found)
@@ -100,10 +101,10 @@ def finer(found: Found, limits: Limits) -> Iterator[Found]:
 
 
 def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """Solve a programme again on other meshes, from a solution on its own.
+    """Solve a programme again on other meshes, starting from a given solution.
 
-    If the solution was reached from a smoother problem, so is the new one: next to bounds, controls that are hardly
-    smoothed jump from point to point, and are no start for finer meshes.
+    If the given solution was reached from a smoother problem, so is the new one: near bounds, controls with little
+    smoothing jump from point to point and are poor starts for finer meshes.
     """
     begun = found if found.programme.smoothing > FIRST_SMOOTHINGS[-1] else found.smoother
     smoother = None if begun is None else _carried(begun, meshes, begun.programme.smoothing, limits)
@@ -116,7 +117,7 @@ def _again(found: Found, meshes: list[Array], smoothing: float, limits: Limits) 
 
 
 def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits) -> Found:
-    """Solve a programme on other meshes directly from a solution on its own."""
+    """Solve a programme on other meshes, starting directly from a given solution."""
     old = found.programme
     programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
     start = starts.carried(programme, old, found.unknown)

@@ -1,4 +1,4 @@
-"""Finer meshes: where the equations are not met between the points, and where controls jump."""
+"""Mesh refinement where the equations of motion have residuals between the points, and where controls jump."""
 
 from __future__ import annotations
 
@@ -12,17 +12,19 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.transcription import DEGREE, NODES, RADAU, basis
 
 TOLERANCE, MOST_PIECES = 1e-5, 6
-"""Residual that is small enough, relative to the sizes of states; pieces into which an interval is cut at most."""
+"""Residual, relative to the magnitudes of states, below which an interval is not divided; maximum number of parts of an
+interval."""
 
 UNRESOLVED, HALVES = 1.0, 2
-"""Residual, in sizes of states, from which a mesh does not resolve its motion, and into how many pieces intervals
-are cut at most then: a much finer mesh is another problem, whose motion is somewhere else."""
+"""Residual, relative to the magnitudes of states, above which a mesh does not resolve its motion, and maximum number of
+parts of an interval in this case. On a much finer mesh the motion would be a different one."""
 
 JUMP, PIECES = 0.15, 4
-"""Change of a control within an interval, as a share of what it may do, that is a jump; how often it is cut then."""
+"""Change of a control within an interval, relative to its range, that counts as a jump; number of parts of such an
+interval."""
 
 EVENLY = 0.5
-"""Share of a graded mesh that is laid evenly in time; the rest is laid evenly along the way of the states."""
+"""Fraction of the points of a graded mesh that are even in time; the others are even along the path of the states."""
 
 MIDDLES = 0.5 * (NODES[:-1] + NODES[1:])
 STATES = np.array([[one(tau) for one in basis(NODES)] for tau in MIDDLES])
@@ -31,12 +33,12 @@ VARIABLES = np.array([[one(tau) for one in basis(RADAU)] for tau in MIDDLES])
 
 
 def graded(times: Array, x: Array, intervals: int) -> Array:
-    """Edges of intervals from 0 to 1 that are short where the states of a motion change fast.
+    """Return edges of intervals from 0 to 1 that are short where the states of a motion change fast.
 
     Parameters
     ----------
     times, x
-        Of the motion: increasing (N,), and states (n, N), of which each counts as a share of its range.
+        Increasing times (N,) and states (n, N) of the motion; each state counts relative to its range.
     """
     span = np.ptp(x, axis=1, keepdims=True)
     steps = np.diff(x, axis=1) / np.where(span > 0.0, span, 1.0)
@@ -49,7 +51,7 @@ def graded(times: Array, x: Array, intervals: int) -> Array:
 
 
 def refined(found: Found) -> tuple[list[Array], float]:
-    """Edges of finer intervals, phase by phase, and the largest residual that was found."""
+    """Return edges of finer intervals for each phase, and the largest residual of the equations of motion."""
     programme = found.programme
     errors, jumps = _residuals(found), _jumps(found)
     most = MOST_PIECES if errors.max() < UNRESOLVED else HALVES
@@ -66,7 +68,7 @@ def refined(found: Found) -> tuple[list[Array], float]:
 
 
 def _residuals(found: Found) -> Array:
-    """The largest residual of the equations between the points, interval by interval."""
+    """Return the largest residual of the equations of motion between the points of each interval."""
     programme = found.programme
     x, v, durations, free, start = programme.unpacked(found.unknown)
     k, d = programme.intervals, DEGREE
@@ -86,7 +88,7 @@ def _residuals(found: Found) -> Array:
 
 
 def _jumps(found: Found) -> Array:
-    """In which intervals a bounded control changes much."""
+    """Return the intervals in which a bounded control changes strongly."""
     programme: Programme = found.programme
     v = programme.unpacked(found.unknown)[1]
     span = programme.controls.upper - programme.controls.lower

@@ -1,4 +1,4 @@
-"""A solved programme as a motion in the model's units, with costates and multipliers from those of its rows."""
+"""Conversion of a solved programme into a motion in the model's units, with costates and multipliers."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.transcription import DEGREE, RADAU, basis
 
 CROSSED = 1e-3
-"""Share of its size by which a path constraint is violated between the points of a motion that is none."""
+"""Violation of a path constraint between the points of a motion, relative to its magnitude, that is tolerated."""
 
 START = np.array([[one(0.0)] for one in basis(RADAU)])
-"""Weights of the points of an interval in the value at its start."""
+"""Weights of the points of an interval in the extrapolated value at its start."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What a programme found.
+    """The motion that solves a nonlinear programme.
 
     Attributes
     ----------
     instance
-        With the values that were found for what it leaves free besides states at the end and the final time.
+        Instance with the values found for its free parameters, initial states and initial time.
     times, x, lam
-        Of all points, the start first: (N + 1,), (n, N + 1), (n, N + 1).
+        Times, states and costates at all points, the initial one first: (N + 1,), (n, N + 1), (n, N + 1).
     u
-        Controls at the points but the first, (m, N).
+        Controls at all points but the first, (m, N).
     pushes, steps
-        Multipliers of path constraints there, bounds of controls among them, each times the length of time that belongs
-        to its point, (h, N); and these lengths, (N,).
+        Multipliers of path constraints, including bounds of controls, each times the time weight of its point, (h, N);
+        and these time weights, (N,).
     nu
         Multipliers of the terminal constraints.
     passed, jumps
-        Times of the points on the way, and multipliers of all of their conditions.
+        Times of the waypoints, and multipliers of all of their conditions.
     """
 
     instance: Instance
@@ -56,7 +56,7 @@ class Motion:
 
 
 def motion(found: Found) -> Motion:
-    """The motion that a programme found."""
+    """Return the motion that solves a programme."""
     programme = found.programme
     x, v, durations, free, start = programme.unpacked(found.unknown)
     n, points, scale = len(x), programme.count, programme.sizes.cost
@@ -85,7 +85,7 @@ def motion(found: Found) -> Motion:
 
 
 def violates(at: Motion) -> bool:
-    """Whether a motion violates a path constraint halfway between its points."""
+    """Return whether a motion violates a path constraint halfway between its points."""
     if not at.instance.model.spec.path_constraints:
         return False
     points = at.times[1:], at.x[:, 1:], at.u
@@ -94,7 +94,7 @@ def violates(at: Motion) -> bool:
 
 
 def _pushes(found: Found) -> Array:
-    """Multipliers (h, N) of all path constraints at the points, those of bounds of controls among them."""
+    """Return the multipliers (h, N) of all path constraints at the points, including those of bounds of controls."""
     programme, spec = found.programme, found.programme.instance.model.spec
     points, kept, scale = programme.count, programme.points.kept, programme.sizes.cost
     pushes = np.zeros((len(spec.path_constraints), points))

@@ -1,8 +1,8 @@
-"""How near to the given end a motion within its bounds can come: evidence that an instance is infeasible.
+"""Smallest distance from the given final state that admissible motions reach: evidence that an instance is infeasible.
 
-The miss is minimised alone, whatever the motion costs, from several starts. Where the least miss is not zero, and most
-searches end there, no motion near these arrives; that is evidence, not a proof, and the distance itself is never called
-a solution.
+Only the distance is minimised, not the cost, from several starts. If the smallest distance is not zero and most
+searches lead to it, no nearby motion reaches the final state; this is evidence, not a proof, and the motion is never
+returned as a solution.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.starts import Plan
 
 INTERVALS = 40
-"""Intervals of the mesh."""
+"""Number of intervals of the mesh."""
 
 PLANS = (
     Plan(arriving=True),
@@ -36,38 +36,39 @@ PLANS = (
     Plan(coasting=True),
     Plan(noise=0.3, seed=3),
 )
-"""Starts from which the miss is minimised."""
+"""Starts from which the distance is minimised."""
 
 CLOSE_MISS = 5e-3
-"""Relative miss below which nobody can tell: controls that switch within an interval may do better."""
+"""Relative distance below which infeasibility is not claimed: controls that switch within an interval may reach the
+end."""
 
 SIMILAR, AGREEING = 0.1, 0.5
-"""Relative difference of misses that are the same, and the share of the searches that have to find the least one: where
-fewer do, others may arrive."""
+"""Relative difference of distances that count as equal, and minimum fraction of the searches that have to find the
+smallest distance for it to be evidence."""
 
 RESIDUAL = 1.0
-"""Largest residual of the equations between the points of an interval, relative to the sizes of states, with which
-these points still show a motion: next to a singularity a coarse mesh steps over what cannot be passed."""
+"""Largest residual of the equations of motion between the points of an interval, relative to the magnitudes of states.
+Above it the points do not represent a motion: near a singularity a coarse mesh steps over it."""
 
 FEWEST = 2
-"""Searches that have to end at a motion, for the least miss to be evidence."""
+"""Minimum number of searches that have to find a motion for the smallest distance to be evidence."""
 
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The nearest end that was found.
+    """The motion with the smallest distance from the given final state.
 
     Attributes
     ----------
     missed
-        By how much each given final state is missed, in the model's units, by its name, and each terminal constraint,
-        by its multiplier's.
+        Deviation from each given final state, in the model's units, by its name, and from each terminal constraint, by
+        the name of its multiplier.
     units
-        Of states, by their names.
+        Units of the states, by their names.
     distance
-        The largest miss, relative to the size of its state along the way.
+        Largest deviation, relative to the magnitude of its state along the motion.
     starts, agreeing
-        Searches in which the miss was minimised, and how many of them led to this one.
+        Number of searches for the smallest distance, and number of searches that led to this motion.
     """
 
     missed: dict[str, float]
@@ -78,17 +79,17 @@ class Nearest:
 
     @property
     def arrives(self) -> bool:
-        """Whether the motion reaches the end to within rounding."""
+        """Return whether the motion reaches the end within rounding."""
         return self.distance <= ARRIVED
 
     @property
     def undecided(self) -> bool:
-        """Whether the motion may reach the end, or too few starts led to the same distance from it."""
+        """Return whether the motion may reach the end, or too few searches led to the same distance."""
         return self.distance <= CLOSE_MISS or self.agreeing < AGREEING * self.starts
 
     @property
     def message(self) -> str:
-        """One line."""
+        """Return the distance as a message of one line."""
         misses = ", ".join(
             " ".join(filter(None, [f"{name} by {value:.3g}", self.units.get(name)]))
             for name, value in self.missed.items()
@@ -100,12 +101,12 @@ class Nearest:
 
 
 def nearest(instance: Instance, limits: Limits) -> Nearest | None:
-    """Minimise the miss of the given end; ``None`` where few of the starts lead to a motion: they say nothing.
+    """Minimise the distance from the given final state; ``None`` if too few of the starts lead to a motion.
 
     Parameters
     ----------
     instance
-        With a given final time.
+        Instance with a given final time.
     """
     tried, found = 0, list[Found]()
     for one in _solved(instance, limits):
@@ -132,7 +133,7 @@ def nearest(instance: Instance, limits: Limits) -> Nearest | None:
 
 
 def reaching(instance: Instance, limits: Limits) -> Instance | None:
-    """The instance with values for what it leaves free with which its end is reached; ``None`` where none are found."""
+    """Return the instance with values of its free quantities that reach its end; ``None`` if none are found."""
     for one in _solved(instance, limits):
         if arrived(one):
             return motion(one).instance
@@ -140,7 +141,7 @@ def reaching(instance: Instance, limits: Limits) -> Instance | None:
 
 
 def _solved(instance: Instance, limits: Limits) -> Iterator[Found]:
-    """Where searches for the least miss end, one after the other."""
+    """Yield the results of searches for the smallest distance, one after the other."""
     controls = controls_of(instance)
     if controls is None:
         return

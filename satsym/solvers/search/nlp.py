@@ -1,4 +1,4 @@
-"""The interior-point code that solves programmes: the one place that knows which it is."""
+"""Interface to the interior-point code that solves nonlinear programmes; no other module depends on its choice."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.transcription import Places
 
 TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
-"""Tolerance of the optimality conditions, and the one that is taken where rounding allows no more."""
+"""Tolerance of the optimality conditions, and the looser one that is accepted if rounding allows no better."""
 
 RESTORED = 2
-"""Iterations in all, as a multiple of those that do not restore feasibility."""
+"""Maximum number of all iterations, relative to that of iterations outside the restoration of feasibility."""
 
 SOLVED, ACCEPTED = 0, 1
-"""What the code says of its end."""
+"""Status codes that the solver returns for a solved and for an acceptably solved programme."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Where a solution of a programme ended.
+    """Result of the solution of a nonlinear programme.
 
     Attributes
     ----------
     solved
-        Whether it is optimal, at least acceptably.
+        Whether it is optimal, at least within the acceptable tolerance.
     multipliers
-        Of the rows.
+        Multipliers of the constraint rows.
     pressures
-        Multipliers of the lower and of the upper bounds of the unknowns, none below zero, shape (2, unknowns).
+        Multipliers of the lower and upper bounds of the unknowns, nonnegative, shape (2, unknowns).
     objective
-        The cost without what smoothing adds to it.
+        The cost without the contribution of smoothing.
     smoother
-        The solution of the same problem with norms that are smoothed more, at which this one began, if it did.
+        Solution of the same problem with more smoothing, from which this one was started; otherwise ``None``.
     """
 
     programme: Programme
@@ -52,7 +52,7 @@ class Found:
 
 
 class _Watched:
-    """A programme as the code calls it, which ends where time is up."""
+    """A programme in the form that the solver calls, which ends the iteration at the limits of time and work."""
 
     def __init__(self, programme: Programme, limits: Limits | None, most: int) -> None:
         self.programme, self.limits, self.iterations, self.most = programme, limits, 0, most
@@ -61,19 +61,19 @@ class _Watched:
         self.jacobian = programme.jacobian
 
     def jacobianstructure(self) -> tuple[Places, Places]:
-        """Rows and columns."""
+        """Return rows and columns of the Jacobian's entries."""
         return self.programme.jacobian_places
 
     def hessianstructure(self) -> tuple[Places, Places]:
-        """Rows and columns."""
+        """Return rows and columns of the Hessian's entries."""
         return self.programme.hessian_places
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
-        """Second derivatives of the Lagrangian."""
+        """Return the entries of the Hessian of the Lagrangian."""
         return self.programme.hessian(np.asarray(w), np.asarray(multipliers), factor)
 
     def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *_: object) -> bool:
-        """Called once an iteration; whether to go on."""
+        """Count an iteration, and return whether to continue."""
         self.iterations += 1
         elsewhere, before = _elsewhere(), self.elsewhere
         self.elsewhere = elsewhere
@@ -87,27 +87,27 @@ class _Watched:
 
 
 _WATCHED: list[_Watched] = []
-"""Programmes that are being solved now, in whatever thread."""
+"""Programmes that are being solved at the moment, in any thread."""
 
 
 def _elsewhere() -> float:
-    """Seconds of a processor that other threads of this process have had: the code factors matrices in such."""
+    """Return the processor time in seconds of other threads of this process, in which matrices are factored."""
     return time.process_time() - time.thread_time()
 
 
 def solve(
     programme: Programme, start: Array, limits: Limits | None = None, most: int = 500, near: bool = False
 ) -> Found:
-    """Solve a programme.
+    """Solve a nonlinear programme.
 
     Parameters
     ----------
     start
-        Unknowns to begin with.
+        Initial values of the unknowns.
     most
-        Iterations, besides those that restore feasibility.
+        Maximum number of iterations, not counting those that restore feasibility.
     near
-        Whether the start is near a solution.
+        Whether the initial values are close to a solution.
     """
     os.environ.setdefault("RUST_LOG", "off")  # it tells on the standard error what it does when steps are hard to find
     import pounce  # type: ignore[import-untyped]

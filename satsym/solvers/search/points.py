@@ -1,7 +1,8 @@
-"""Values and exact derivatives, point by point, of rates, costs and constraints, from generated functions.
+"""Values and exact derivatives of rates, costs and constraints at many points, from generated functions.
 
-First derivatives are complex steps through these functions. Second ones are complex steps through ``costate_rate``,
-which is the derivative of the Hamiltonian by the states, and differences of complex steps for the few others.
+First derivatives are complex steps through these functions. Second derivatives are complex steps through
+``costate_rate``, which is the derivative of the Hamiltonian with respect to the states, and differences of complex
+steps for the few others.
 """
 
 from __future__ import annotations
@@ -24,19 +25,19 @@ STEP = 1e-30
 """Step of complex differences."""
 
 DIFFERENCE = 1e-5
-"""Step of real differences, in units of the sizes of what is moved."""
+"""Step of real differences, relative to the scale of the variable."""
 
 
 @dataclass(frozen=True)
 class Points:
-    """A problem at many points at once; local variables are states x, variables v, the time t, free parameters q.
+    """A problem at many points at once; local variables are states x, variables v, time t and free parameters q.
 
     Parameters
     ----------
     free
-        Places of the parameters that are free.
+        Indices of the free parameters.
     sizes
-        Of local variables.
+        Scales of the local variables.
     """
 
     instance: Instance
@@ -46,17 +47,17 @@ class Points:
 
     @property
     def states(self) -> int:
-        """How many."""
+        """Return the number of states."""
         return len(self.instance.initial)
 
     @property
     def local(self) -> int:
-        """How many local variables there are."""
+        """Return the number of local variables."""
         return self.states + self.controls.count + 1 + len(self.free)
 
     @cached_property
     def kept(self) -> list[int]:
-        """Path constraints that are no bounds of controls, by their numbers."""
+        """Return the indices of the path constraints that are not bounds of controls."""
         return list(stated_constraints(self.instance.model.spec).values())
 
     def _parted(self, y: Array) -> tuple[Array, Array, Array, tuple[Any, ...]]:
@@ -67,12 +68,12 @@ class Points:
         return y[:n], y[n:k], y[k], tuple(p)
 
     def rates(self, y: Array) -> Array:
-        """Rates of states and of the cost, shape (n + 1, M), at local variables (l, M), real or complex."""
+        """Return rates of states and cost, shape (n + 1, M), at local variables (l, M), real or complex."""
         x, v, t, p = self._parted(y)
         return sum(weight * rates(self.instance, t, x, u, p) for u, weight in self.controls.nodes(v))  # type: ignore[return-value]
 
     def constraints(self, y: Array) -> Array:
-        """Path constraints, none above zero, shape (c, M)."""
+        """Return the path constraints, nonpositive where they hold, shape (c, M)."""
         if not self.kept:
             return np.empty((0, y.shape[1]), y.dtype)
         x, v, t, p = self._parted(y)
@@ -81,30 +82,30 @@ class Points:
         return np.asarray(np.broadcast_to(found, (len(spec.path_constraints), len(t)))[self.kept])
 
     def slopes(self, function: Callable[[Array], Array], y: Array) -> Array:
-        """Derivatives (rows, l, M) of a function by all local variables."""
+        """Return derivatives (rows, l, M) of a function with respect to all local variables."""
         return self._complex(function, y, range(self.local))
 
     @cached_property
     def _moving(self) -> list[int]:
-        """Local variables by which rates may have derivatives: not the time, where it does not appear in them."""
+        """Return the local variables that rates may depend on; time is left out if rates do not contain it."""
         still = {self.states + self.controls.count} if self.instance.model.spec.autonomous else set()
         still |= {self.states + place for place in self.controls.angles}
         return [place for place in range(self.local) if place not in still]
 
     @cached_property
     def _curved(self) -> list[int]:
-        """Local variables besides the states in which rates need not be linear."""
+        """Return the local variables, except states, in which rates need not be linear."""
         linear = {self.states + place for place in self.controls.linear}
         return [place for place in self._moving if place >= self.states and place not in linear]
 
     def _spread(self, found: Array) -> Array:
-        """Derivatives (rows, l, M) by all local variables from those by the ones that move rates."""
+        """Return derivatives (rows, l, M) by all local variables from those by the variables that rates depend on."""
         whole = np.zeros((len(found), self.local, found.shape[2]))
         whole[:, self._moving] = found
         return whole
 
     def slopes_of_rates(self, y: Array) -> Array:
-        """Derivatives (n + 1, l, M) of :meth:`rates`."""
+        """Return derivatives (n + 1, l, M) of :meth:`rates` with respect to all local variables."""
         return self._spread(self._complex(self.rates, y, self._moving))
 
     def _complex(self, function: Callable[[Array], Array], y: Array, by: Sequence[int]) -> Array:
@@ -115,7 +116,7 @@ class Points:
         return np.imag(found).reshape(len(found), len(by), y.shape[1]) / STEP
 
     def _by_states(self, y: Array, mu: Array, weight: Array) -> Array:
-        """Derivatives (n, M) by the states of mu f + weight L, at M columns that may be a multiple of those of mu."""
+        """Return derivatives (n, M) of mu f + weight L by the states; M may be a multiple of the columns of mu."""
         x, v, t, p = self._parted(y)
         times = y.shape[1] // mu.shape[1]
         lam, weight = np.tile(mu, (1, times)), np.tile(weight, times)
@@ -133,12 +134,12 @@ class Points:
         return total
 
     def hessian(self, y: Array, mu: Array, weight: Array, eta: Array) -> tuple[Array, Array]:
-        """Second derivatives (l, l, M) of mu f + weight L, and those of eta g.
+        """Return Hessians (l, l, M) of mu f + weight L, and those of eta g.
 
         Parameters
         ----------
         mu, weight, eta
-            Shapes (n, M), (M,) and (c, M).
+            Weights of the rates, the running cost and the constraints, shapes (n, M), (M,) and (c, M).
         """
         n, count = self.states, self.local
         weights = np.concatenate([mu, weight[None]])
@@ -163,7 +164,7 @@ class Points:
     def _differences(
         self, function: Callable[[Array], Array], y: Array, by: Sequence[int], slopes: Sequence[int] | None = None
     ) -> Array:
-        """Second derivatives (s, k, M) of one row: by some variables, of those by others or by the same."""
+        """Return second derivatives (s, k, M) of one row: by the variables ``by``, of the derivatives by ``slopes``."""
         whole = by if slopes is None else slopes
         moved = np.repeat(y[:, None], 2 * len(by), 1)
         for k, place in enumerate(by):
@@ -178,14 +179,14 @@ class Points:
         return np.asarray(found)
 
     def cost(self, y: Array) -> Array:
-        """The terminal cost, shape (1, M)."""
+        """Return the terminal cost, shape (1, M)."""
         x, _, t, p = self._parted(y)
         if not self.instance.model.spec.has_terminal_cost:
             return np.zeros((1, y.shape[1]), y.dtype)
         return np.asarray(np.broadcast_to(self.instance.model.terminal_cost_batch(t, x, p), (1, y.shape[1])))
 
     def ends(self, y: Array) -> Array:
-        """What vanishes at the end besides given states, first, and inequalities that are not above zero; (e, M)."""
+        """Return the terminal conditions besides given states, equalities before inequalities (nonpositive), (e, M)."""
         x, _, t, p = self._parted(y)
         rows, spec = [], self.instance.model.spec
         places = [k for k, name in enumerate(spec.state_names) if self.instance.final.get(name) == "reference"]
@@ -204,11 +205,11 @@ class Points:
 
     @property
     def inequalities(self) -> int:
-        """How many of the rows at the end are inequalities: the last ones."""
+        """Return the number of terminal rows that are inequalities; they are the last ones."""
         return len(stated(self.instance.model).spec.terminal_inequalities)
 
     def on_the_way(self, y: Array) -> Array:
-        """What vanishes at points on the way, all of their conditions, shape (k, M)."""
+        """Return the residuals of all conditions at waypoints, shape (k, M)."""
         x, _, t, p = self._parted(y)
         spec = self.instance.model.spec
         count = sum(one.conditions for one in spec.interior)

@@ -1,4 +1,4 @@
-"""The programme of an instance with exact sparse derivatives, as solvers of such ask for it."""
+"""The nonlinear programme of an instance with exact sparse derivatives, in the form that sparse solvers require."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from satsym.solvers.search.transcription import DEGREE, SLOPES, Function, Places
 
 
 class Programme(Transcription):
-    """A nonlinear programme: what a transcription has, and first and second derivatives."""
+    """A nonlinear programme: a transcription with first and second derivatives."""
 
     @cached_property
     def _into(self) -> tuple[Array, Array, Places]:
-        """How local variables move with the unknowns of their point, apart from steps: a matrix (l, z, N).
+        """Derivatives of the local variables of each point with respect to its unknowns, a matrix (l, z, N).
 
-        And its rows of steps (z, N), and the places (z, N) of these unknowns.
+        Also the derivatives of the steps (z, N), and the indices (z, N) of these unknowns.
         """
         n, k, points = self.points.states, self.controls.count, self.count
         inner, wide = self.points.local, len(self.globals)
@@ -40,7 +40,10 @@ class Programme(Transcription):
         return into, steps, places
 
     def _end_into(self, point: int) -> tuple[Array, Places]:
-        """Local variables of one point by the unknowns, without its controls: a matrix (l, z), and places (z,)."""
+        """Return derivatives of the local variables of one point by the unknowns, (l, z), and indices (z,) of these.
+
+        Controls of the point are left out.
+        """
         n, wide = self.points.states, len(self.globals)
         into = np.zeros((self.points.local, n + wide))
         into[range(n), range(n)] = self.sizes.states
@@ -53,14 +56,14 @@ class Programme(Transcription):
         return into, np.concatenate([point * n + np.arange(n), self.globals])
 
     def _slopes(self, w: Array) -> Array:
-        """Derivatives (n + 1, l, N) of rates by local variables; those of the last unknowns are remembered."""
+        """Return derivatives (n + 1, l, N) of rates by local variables, cached for the last unknowns."""
         key = w.tobytes()
         if self._last_slopes is None or self._last_slopes[0] != key:
             self._last_slopes = key, self.points.slopes_of_rates(self._local(w)[0])
         return self._last_slopes[1]
 
     def gradient(self, w: Array) -> Array:
-        """The derivatives of :meth:`objective` by all unknowns."""
+        """Return the derivatives of :meth:`objective` with respect to all unknowns."""
         _, steps, _ = self._local(w)
         into, grown, places = self._into
         slopes, cost = self._slopes(w)[-1], self._rates(w)[-1]
@@ -72,7 +75,7 @@ class Programme(Transcription):
         return found / self.sizes.cost
 
     def jacobian(self, w: Array) -> Array:
-        """Entries of the rows' derivatives, at the places of :attr:`jacobian_places`."""
+        """Return the entries of the constraint Jacobian, at the positions of :attr:`jacobian_places`."""
         y, steps, _ = self._local(w)
         n = self.points.states
         into, grown, _ = self._into
@@ -97,14 +100,14 @@ class Programme(Transcription):
 
     @cached_property
     def _collocation(self) -> Array:
-        """Derivatives (N, degree + 1) of slopes by the states of their interval."""
+        """Derivatives (N, degree + 1) of the interpolated slopes with respect to the states of their interval."""
         return np.tile(SLOPES.T, (self.intervals, 1))
 
     def _spots(self, norm: Norm) -> list[int]:
         return [*norm.places, *([norm.spot] if norm.spot is not None else [])]
 
     def _signed(self, number: int) -> Array:
-        """Factors (k, 1) of the squares in a norm's row, times the sizes of its variables."""
+        """Return the factors (k, 1) of the squares in the row of a norm, times the scales of its variables."""
         norm = self.controls.norms[number]
         signs = np.array([1.0] * len(norm.places) + [-1.0] * (norm.spot is not None))
         spots = self._spots(norm)
@@ -112,7 +115,7 @@ class Programme(Transcription):
 
     @cached_property
     def _single(self) -> list[tuple[Function, int]]:
-        """Functions of one point whose rows are constraints, and where that is."""
+        """Functions of one point whose values are constraint rows, and the index of that point."""
         found: list[tuple[Function, int]] = []
         if "ends" in self.kinds:
             found.append((self.points.ends, self.count))
@@ -125,19 +128,19 @@ class Programme(Transcription):
 
     @cached_property
     def _summed(self) -> tuple[Places, int]:
-        """Where entries of the derivatives are added, and how many places there are."""
+        """Positions at which entries of the Jacobian are summed, and the number of positions."""
         rows, columns = self._entries
         unique, target = np.unique(rows * self.unknowns + columns, return_inverse=True)
         self._jacobian_keys = unique
         return target, len(unique)
 
     def _passed(self, rows: slice, y: Array) -> Array:
-        """Values of some of the conditions at points on the way."""
+        """Return the values of some of the conditions at waypoints."""
         return self.points.on_the_way(y)[rows]
 
     @cached_property
     def jacobian_places(self) -> tuple[Places, Places]:
-        """Rows and columns of :meth:`jacobian`."""
+        """Rows and columns of the entries of :meth:`jacobian`."""
         _ = self._summed
         return self._jacobian_keys // self.unknowns, self._jacobian_keys % self.unknowns
 
@@ -178,7 +181,7 @@ class Programme(Transcription):
         return np.concatenate(rows), np.concatenate(columns)
 
     def hessian(self, w: Array, multipliers: Array, factor: float) -> Array:
-        """Entries of the second derivatives of factor * objective + multipliers * rows, on the diagonal and below."""
+        """Return the lower triangle of the Hessian of factor * objective + multipliers * rows, as entries."""
         y, steps, _ = self._local(w)
         n = self.points.states
         into, grown, _ = self._into
@@ -211,7 +214,7 @@ class Programme(Transcription):
         return np.bincount(target, np.concatenate(entries)[chosen], count).astype(float)
 
     def _weighed(self, multipliers: Array, factor: float) -> list[tuple[Function, int, Array]]:
-        """Functions of one point with their weights."""
+        """Return functions of one point, the index of the point, and their weights in the Lagrangian."""
         found: list[tuple[Function, int, Array]] = [
             (self.points.cost, self.count, np.array([factor / self.sizes.cost]))
         ]
@@ -226,7 +229,7 @@ class Programme(Transcription):
 
     @cached_property
     def _merged(self) -> tuple[Places, Places, int]:
-        """Which entries of blocks count, where they are added, and how many places there are."""
+        """Indices of the block entries in the lower triangle, positions at which they are summed, and their number."""
         rows, columns = self._block_places
         chosen = np.flatnonzero(rows >= columns)
         key = rows[chosen] * self.unknowns + columns[chosen]
@@ -248,6 +251,6 @@ class Programme(Transcription):
 
     @cached_property
     def hessian_places(self) -> tuple[Places, Places]:
-        """Rows and columns of :meth:`hessian`."""
+        """Rows and columns of the entries of :meth:`hessian`."""
         _ = self._merged
         return self._hessian_keys // self.unknowns, self._hessian_keys % self.unknowns

@@ -1,4 +1,4 @@
-"""Units of a programme's unknowns, from the motion at rest, the end that is missed, and what the cost comes to."""
+"""Scales of a programme's unknowns, from the motion with controls at rest, its distance from the end, and the cost."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ from satsym.solvers.search.controls import Controls, rates
 from satsym.solvers.search.transcription import Sizes
 
 STEPS = 200
-"""In which the motion at rest is followed."""
+"""Number of steps of the motion with controls at rest."""
 
 FAR_STATE = 30.0
-"""Multiple of the largest given number beyond which it is not followed."""
+"""Magnitude, as a multiple of the largest given number, at which the motion at rest is cut off."""
 
 ROUNDING = 1e-12
-"""Share of its largest rate with which a state at rest seems to move."""
+"""Rate of a state, relative to the largest rate, that counts as rounding."""
 
 TELLING = 1e-4
-"""Share of the size that moves others by theirs, below which a motion at rest says nothing of a state's size."""
+"""Magnitude of a state in the motion at rest, relative to the magnitude that would move other states by their own,
+below which the motion tells nothing about the state's scale."""
 
 LEVEL = 0.3
-"""Share of the sizes of controls at which the cost is looked at."""
+"""Magnitude of the controls, relative to their scales, at which the cost is evaluated."""
 
 
 def wanted(instance: Instance, end: float) -> Array:
-    """Final states as far as they are given, the nearest within ranges; NaN elsewhere."""
+    """Return the given final states, for ranges the value closest to the initial state; NaN elsewhere."""
     found = np.full(len(instance.initial), np.nan)
     for i, name in enumerate(instance.model.spec.state_names):
         value = instance.final.get(name)
@@ -45,7 +46,7 @@ def wanted(instance: Instance, end: float) -> Array:
 
 
 def resting(controls: Controls) -> Array:
-    """Variables of controls that are small and within their bounds, and away from both where they can be."""
+    """Return control variables that are small and strictly within their bounds if possible."""
     low, high = controls.lower, controls.upper
     v = np.clip(np.zeros(controls.count), low, high)
     bounded = np.isfinite(low) & np.isfinite(high)
@@ -66,13 +67,13 @@ class Rest:
 
     controls: Array
     states: Array
-    """Row by row of time, as far as it stays within reason."""
+    """States, one row for each time, up to the time at which they become too large."""
     whole: bool
-    """Whether that is all of it."""
+    """Whether the states cover the whole duration."""
 
 
 def sizes_of(instance: Instance, controls: Controls, duration: float) -> Sizes:
-    """Units of the unknowns of an instance for a duration, which is a guess where that is free."""
+    """Return the scales of an instance's unknowns for a duration, which is an initial guess if it is free."""
     rest = _rest(instance, controls, duration)
     states = _of_states(instance, controls, duration, rest)
     variables, cost = _of_controls(instance, controls, duration, rest)
@@ -81,18 +82,18 @@ def sizes_of(instance: Instance, controls: Controls, duration: float) -> Sizes:
 
 
 def flow(instance: Instance, controls: Controls, t: float, x: Array, v: Array) -> Array:
-    """Rates (n + 1,) of states and of the cost at one point."""
+    """Return the rates (n + 1,) of states and cost at one point."""
     return flows(instance, controls, np.array([t]), x[:, None], v[:, None])[:, 0]
 
 
 def flows(instance: Instance, controls: Controls, t: Array, x: Array, v: Array) -> Array:
-    """Rates (n + 1, M) of states and of the cost at many points: times (M,), states (n, M), variables (k, M)."""
+    """Return rates (n + 1, M) of states and cost at times (M,), states (n, M) and variables (k, M)."""
     found = [weight * rates(instance, t, x, u, instance.parameters) for u, weight in controls.nodes(v)]
     return np.asarray(np.sum(found, axis=0))
 
 
 def followed(instance: Instance, controls: Controls, times: Array, x: Array, v: Array, far: float) -> Array:
-    """States row by row along times with constant controls, by steps of RK4, as far as they stay within reason."""
+    """Return states by RK4 steps with constant controls, one row for each time, until they become too large."""
     u = np.repeat(controls.controls(v[:, None]), len(times), 1)
     start = tuple(x.tolist())
     found = tried(lambda: instance.model.forward(times, start, u, u[:, 1:], instance.parameters)[0].T)
@@ -135,14 +136,14 @@ def _of_states(instance: Instance, controls: Controls, duration: float, rest: Re
 
 
 def _largest(instance: Instance, controls: Controls, x: Array) -> Array:
-    """The largest rates (n,) of states at any node of the controls: at rest these cancel but for rounding."""
+    """Return the largest rates (n,) of states at any node of the controls, the scale of rounding for rates at rest."""
     nodes = [u for u, _ in controls.nodes(np.zeros((controls.count, 1)))]
     found = [rates(instance, np.array([instance.t0]), x[:, None], u, instance.parameters)[:-1, 0] for u in nodes]
     return np.asarray(np.abs(found).max(axis=0))
 
 
 def _through_others(instance: Instance, controls: Controls, duration: float, size: Array, rest: Rest) -> Array:
-    """Sizes of states of which nothing is given: what moves the others by their sizes."""
+    """Return scales of states without given values: magnitudes that move the other states by their scales."""
     n, size = len(size), size.copy()
     v = rest.controls + 0.1 * reaches(controls)
     x = np.array(instance.initial) + 1e-3 * size
@@ -162,16 +163,16 @@ def _through_others(instance: Instance, controls: Controls, duration: float, siz
 
 
 def reaches(controls: Controls) -> Array:
-    """The largest magnitudes of variables between two bounds; one elsewhere."""
+    """Return the largest magnitudes of variables with two bounds; 1 for other variables."""
     bounded = np.isfinite(controls.lower) & np.isfinite(controls.upper)
     largest = np.maximum(np.abs(controls.lower), np.abs(controls.upper))
     return np.where(bounded & (largest > 0.0), np.where(bounded, largest, 1.0), 1.0)
 
 
 def _of_controls(instance: Instance, controls: Controls, duration: float, rest: Rest) -> tuple[Array, float]:
-    """Units of the variables, and of the cost.
+    """Return the scales of the variables and of the cost.
 
-    Where a control has no bound, it is what makes up for the part of the end that the motion at rest misses.
+    The scale of an unbounded control is the value that corrects the distance of the motion at rest from the end.
     """
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
     given = ~np.isnan(end)
@@ -208,7 +209,7 @@ def _of_controls(instance: Instance, controls: Controls, duration: float, rest: 
 
 
 def _needed(instance: Instance, controls: Controls, duration: float, x: Array, missed: Array) -> Array:
-    """The least of each variable alone that makes up for some part of the end that is missed; zero where none does."""
+    """Return the smallest value of each variable alone that corrects some part of the miss; zero if none does."""
     found = np.zeros(controls.count)
     for k in range(controls.count):
         moved = np.full(controls.count, 0.1 + 0.0j)

@@ -1,8 +1,8 @@
-"""Where programmes are started: a short list of motions that is fixed for an instance.
+"""Starts of nonlinear programmes: a short list of motions that is fixed for an instance.
 
-The straight line to the end, controls that are held next to a bound where no end is given, coasts from both ends,
-revolutions about the origin, the straight line with controls bent by drawn waves; durations that are free are guessed
-several times as long.
+They are the straight line to the final state, controls near a bound if no final state is given, uncontrolled motions
+from both ends, revolutions about the origin, and straight lines with random waves; free durations are tried with
+several multiples of their initial guess.
 """
 
 from __future__ import annotations
@@ -21,72 +21,71 @@ from satsym.solvers.search.sizes import flow, followed, resting, wanted
 from satsym.solvers.search.transcription import Places
 
 WITHIN = 1e2
-"""Multiple of its size to which a state may grow in a start."""
+"""Largest magnitude of a state in a start, as a multiple of its scale."""
 
 WAVES = 3
-"""Waves of which drawn starts are made."""
+"""Number of harmonic waves that random starts are made of."""
 
 EQUAL_RATE = 1e-9
-"""Relative difference of a rate and a state that are one but for rounding."""
+"""Relative difference of a rate and a state below which they count as the same quantity."""
 
 FREELY, DRAWS, BENT = 1.0, 40, (0.0, 0.3, 1.0, 0.3)
-"""Standard deviation of drawn ends, in sizes of their states, how many are drawn, and how far paths to them bend."""
+"""Standard deviation of random final states, in scales of the states, their number, and amplitudes of waves on paths."""
 
 MORE, WIDER, LASTING = 24, (0.3, 1.0, 3.0), (2.0, 4.0, 1.0)
-"""Further starts where the first ones come to several costs or to nothing, how far they are bent, and how long they
-last, as shares of the first guess, where the duration is free: the widest come first there, because detours take time.
-"""
+"""Number of further starts if the first ones lead to several costs or none, amplitudes of their waves, and their
+durations relative to the initial guess. If the duration is free, the largest amplitudes come first, because detours
+take time."""
 
 LOOKS = 5
-"""Drawn points at which it is looked whether anything but time costs."""
+"""Number of random points at which it is tested whether only time has a cost."""
 
 LOOSENED = 20
-"""Starts that begin without bounds of controls."""
+"""Number of starts that ignore the bounds of controls at first."""
 
 NEXT_TO_BOUND = 0.96
-"""Share of their ranges at which controls are held next to their bounds."""
+"""Position of controls near their bounds, relative to half their ranges."""
 
 LENGTHS = (0.25, 4.0, 0.06)
-"""How long a phase between points on the way is, where the others have a length of one."""
+"""Lengths of one phase between waypoints that are tried, relative to the other phases."""
 
 TURNS = (0, -1, 1, 2, 3)
-"""Revolutions that are tried where the duration is free; one less than none is the other way round."""
+"""Numbers of revolutions that are tried if the duration is free; -1 is one turn in the opposite direction."""
 
 DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)
-"""Durations that are given at first, as shares of the first guess."""
+"""Durations, relative to the initial guess, that are fixed at first."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How a start is made.
+    """Description of a start of a nonlinear programme.
 
     Attributes
     ----------
     scale
-        The duration, as a share of the first guess.
+        The duration, relative to its initial guess.
     timed
-        Whether the motion of that duration is solved for first, so that each valley of the cost over it is entered.
+        Whether the motion is first solved with this duration fixed, so that each local minimum over it is found.
     noise, seed
-        How far states and controls are bent, as a share of their sizes, and by which random numbers.
+        Amplitude of the waves on states and controls, relative to their scales, and the seed of the random waves.
     arriving
-        Whether a motion that arrives is found first, whatever it costs, from one that obeys its equations.
+        Whether a motion to the final state is found first, at any cost, from one that obeys its equations.
     loosened
-        Whether the motion without bounds of controls is solved for first, as weak controls arrive only in time with a
-        swing.
+        Whether the motion without bounds of controls is solved first, as weak controls need a swing to arrive in time.
     turns
-        How often the motion goes round the origin; ``None`` for a straight line.
+        Number of revolutions about the origin; ``None`` for a straight line.
     coasting
-        Whether the motion is that of both ends without controls, blended into one another.
+        Whether the start blends the uncontrolled motions from both ends.
     turned
-        What angles of controls are at, as a share of half a turn.
+        Value of the controls that are angles, as a fraction of half a turn; ``None`` for the default.
     drawn
-        By which random numbers free ends are drawn; 0 where they are not.
+        Seed of the random values of free initial and final states; 0 if they are not random.
     guessed
-        Whether states and controls are those that the instance guesses, as far as it does.
+        Whether states and controls are taken from the initial guess of the instance.
     at_bound
-        The share of their ranges, between -1 and 1, at which controls are held all along.
+        Constant position of the controls in their ranges, between -1 and 1; ``None`` for the default.
     parts
-        Shares of the duration between points on the way; empty where these are equal.
+        Fractions of the duration between waypoints; empty if they are equal.
     """
 
     scale: float = 1.0
@@ -105,7 +104,7 @@ class Plan:
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
-    """The list for an instance, in the order in which they are tried."""
+    """Return the list of starts of an instance, in the order in which they are tried."""
     given = instance.tf is not None
     if given:
         drawn = [(0.1, 1), (0.3, 2), (0.3, 3), (1.0, 4), (1.0, 5)]
@@ -155,27 +154,27 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
 
 
 def draws_ends(instance: Instance) -> bool:
-    """Whether initial values are free, or the end is in part or within ranges: then some starts have drawn ones."""
+    """Return whether initial states are free or final states partly free or in ranges; random ones are tried then."""
     end = wanted(instance, instance.t0)
     begins = any(one.place is Place.INITIAL for one in instance.free)
     return begins or bool(instance.ranges) or bool(np.isnan(end).any() and not np.isnan(end).all())
 
 
 def weak(instance: Instance, controls: Controls) -> list[Plan]:
-    """Further starts where controls may be hardly strong enough; none where they have no bounds."""
+    """Return further starts for controls that may be hardly strong enough; an empty list if they have no bounds."""
     if instance.tf is None or instance.model.spec.switching or controls.loosened is None:
         return []
     return [Plan(noise=WIDER[seed % len(WIDER)], seed=seed, loosened=True) for seed in range(LOOSENED)]
 
 
 def _limited(instance: Instance, controls: Controls) -> bool:
-    """Whether anything limits what controls do: where nothing does, an end is reached in any time, without a swing."""
+    """Return whether controls or path are constrained; otherwise any end can be reached in any time without a swing."""
     bounded = np.isfinite(controls.lower).any() or np.isfinite(controls.upper).any()
     return bool(bounded or controls.norms or controls.angles or instance.model.spec.path_constraints)
 
 
 def _time_alone(instance: Instance, duration: float) -> bool:
-    """Whether nothing but time costs anything, at the same rate everywhere: then the cost has one valley over it."""
+    """Return whether only time has a cost, at a constant rate; the cost then has one minimum over the duration."""
     spec = instance.model.spec
     if spec.has_terminal_cost:
         return False
@@ -189,7 +188,7 @@ def _time_alone(instance: Instance, duration: float) -> bool:
 
 
 def _parts(phases: int) -> list[tuple[float, ...]]:
-    """Shares of the duration between points on the way, that before or after one point long or short in turn."""
+    """Return fractions of the duration between waypoints, with one phase in turn longer or shorter than the others."""
     if phases == 1:
         return []
     rows = [[length if k == place else 1.0 for k in range(phases)] for place in range(phases) for length in LENGTHS]
@@ -197,16 +196,16 @@ def _parts(phases: int) -> list[tuple[float, ...]]:
 
 
 def _ranged(controls: Controls) -> Places:
-    """Places of controls that have two bounds of their own."""
+    """Return the indices of controls that have two bounds of their own."""
     lifted = {place for lift in controls.lifts for place in lift.places}
     given = [place for place in range(controls.given) if place not in lifted]
     return np.array([k for k in given if np.isfinite(controls.lower[k]) and np.isfinite(controls.upper[k])], int)
 
 
 def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
-    """Positions with their velocities, two or three pairs: states whose rates are states, and nothing else.
+    """Return index pairs of positions and their velocities (two or three pairs), or an empty list.
 
-    None where a position must be positive: that is a distance, beside which the other positions are angles.
+    It is empty if a position has to be positive: it is a distance then, and the other positions are angles.
     """
     rng, n = np.random.default_rng(1), len(instance.initial)
     x = np.array(instance.initial) * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, n)) + 1e-3 * rng.uniform(1.0, 2.0, n)
@@ -234,7 +233,7 @@ def _swept(start: Array, end: Array, pairs: list[tuple[int, int]]) -> float:
 
 
 def begun(programme: Programme, plan: Plan) -> Array:
-    """The unknowns of a programme by a plan."""
+    """Return the initial unknowns of a programme according to a plan."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
     equal = np.full(programme.phases, 1.0 / programme.phases)
     durations = plan.scale * sizes.duration * (np.array(plan.parts) if plan.parts else equal)
@@ -272,7 +271,7 @@ def begun(programme: Programme, plan: Plan) -> Array:
 
 
 def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> tuple[Array, Array]:
-    """Values of states that are free at the start or at the end: drawn, of the sizes of these states."""
+    """Return initial and final states with random values for the free ones, of the states' scales."""
     if not plan.drawn:
         return start, end
     start, end, rng, sizes = start.copy(), end.copy(), np.random.default_rng(plan.drawn), programme.sizes.states
@@ -291,7 +290,7 @@ def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> t
 
 
 def _overlaid(programme: Programme, x: Array, v: Array, share: Array) -> None:
-    """Put states and controls in that the instance guesses: values evenly spaced, straight lines between."""
+    """Overwrite states and controls with the instance's initial guess, interpolated linearly between even times."""
     instance, controls, spec = programme.instance, programme.controls, programme.instance.model.spec
 
     def along(values: Sequence[float], at: Array) -> Array:
@@ -313,7 +312,7 @@ def _overlaid(programme: Programme, x: Array, v: Array, share: Array) -> None:
 
 
 def _bent(programme: Programme, x: Array, v: Array, share: Array, plan: Plan) -> tuple[Array, Array]:
-    """States and controls with drawn waves added."""
+    """Return states and controls with random waves added."""
     rng, controls, sizes = np.random.default_rng(plan.seed), programme.controls, programme.sizes
     waves = np.array([np.sin(np.pi * k * share) / k for k in range(1, WAVES + 1)])
     x = x + plan.noise * sizes.states[:, None] * (rng.normal(size=(len(x), WAVES)) @ waves)
@@ -324,7 +323,7 @@ def _bent(programme: Programme, x: Array, v: Array, share: Array, plan: Plan) ->
 
 
 def _blended(programme: Programme, times: Array, share: Array, start: Array, end: Array, v: Array) -> Array:
-    """Coasts from the start, and backwards from the end, the one fading into the other."""
+    """Return the forward motion from the start blended with the backward motion from the end, without control."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
     line = start[:, None] + np.where(np.isnan(end), 0.0, end - start)[:, None] * share
     rest = np.where(
@@ -347,16 +346,16 @@ def _blended(programme: Programme, times: Array, share: Array, start: Array, end
 
 
 def _finer(times: Array, pieces: int = 4) -> tuple[Array, Places]:
-    """Times with others between them, and the places of the former."""
+    """Return times with intermediate ones inserted, and the indices of the original times."""
     inner = np.linspace(0.0, 1.0, pieces, endpoint=False)
     fine = (times[:-1, None] + np.diff(times)[:, None] * inner).ravel()
     return np.append(fine, times[-1]), np.arange(len(times)) * pieces
 
 
 def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tuple[int, int]], turns: int) -> Array:
-    """A spiral round the origin; the straight line where an end of it is not given.
+    """Return states on a spiral about the origin, or the straight line if the final position is not given.
 
-    Final velocities that are free are those of a circle.
+    Free final velocities are those of a circular orbit.
     """
     (p, vp), (q, vq) = pairs[:2]
     if np.isnan(end[[p, q]]).any():
@@ -375,7 +374,7 @@ def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tup
 
 
 def _followed(programme: Programme, times: Array, x: Array, free: Array, v: Array) -> Array:
-    """With the states that are free at the end as the motion has them along the others."""
+    """Return states in which those that are free at the end follow from integration along the others."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes.states
     x, y = x.copy(), x[:, 0].copy()
     for k in range(len(times) - 1):
@@ -392,7 +391,7 @@ def _followed(programme: Programme, times: Array, x: Array, free: Array, v: Arra
 
 
 def carried(programme: Programme, other: Programme, w: Array) -> Array:
-    """The unknowns of a programme from those of another one, on another mesh."""
+    """Return the unknowns of a programme interpolated from those of a programme on another mesh."""
     x, v, durations, free, start = other.unpacked(w)
     known, times = other.times(durations, start), programme.times(durations, start)
     states = np.array([np.interp(times, known, row) for row in x])

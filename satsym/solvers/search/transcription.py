@@ -1,7 +1,7 @@
-"""An instance as a programme: Radau collocation of degree three on a mesh.
+"""An instance as a nonlinear programme, by Radau collocation of degree three on a mesh.
 
-Unknown are, in units of their sizes, the states at all points, the variables of the controls at collocation points, the
-durations of the phases between points on the way, and what else the instance leaves free. See Betts, Practical Methods
+The unknowns are, in units of their scales, the states at all points, the control variables at collocation points, the
+durations of the phases between waypoints, and the other free quantities of the instance. See Betts, Practical Methods
 for Optimal Control and Estimation Using Nonlinear Programming (2010), chapter 4.
 """
 
@@ -23,16 +23,16 @@ from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.points import Points
 
 DEGREE = 3
-"""Collocation points of an interval."""
+"""Number of collocation points of an interval."""
 
 RADAU = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0])
-"""Their places within it."""
+"""Positions of the collocation points in an interval, from 0 to 1."""
 
 SHORTEST_DURATION, LONGEST_DURATION = 1e-3, 100.0
-"""Shares of the first guess between which a free duration is looked for."""
+"""Smallest and largest value of a free duration, relative to its initial guess."""
 
 ROUGHLY = 0.5
-"""Share of its size by which a final state that follows from others may be off."""
+"""Relative tolerance for a given final state that follows from the others."""
 
 FREE = np.inf
 
@@ -41,7 +41,7 @@ Function: TypeAlias = Callable[[Array], Array]
 
 
 def basis(nodes: Array) -> list[Polynomial]:
-    """The polynomials that are one at a node and zero at the others."""
+    """Return the Lagrange polynomials, which are 1 at one node and 0 at the others."""
     found = []
     for j, node in enumerate(nodes):
         others = np.delete(nodes, j)
@@ -54,24 +54,24 @@ NODES = np.concatenate([[0.0], RADAU])
 SLOPES = np.array([[one.deriv()(tau) for tau in RADAU] for one in basis(NODES)])
 """Derivatives (degree + 1, degree) of the polynomials through all nodes, at the collocation points."""
 WEIGHTS = np.array([one.integ()(1.0) - one.integ()(0.0) for one in basis(RADAU)])
-"""Weights of the quadrature."""
+"""Quadrature weights of the collocation points."""
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """Units of the unknowns."""
+    """Scales of the unknowns."""
 
     states: Array
     variables: Array
     duration: float
     cost: float
     free: Array
-    """Units of what is free besides states and times."""
+    """Scales of the free parameters."""
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Constraints of one kind: where they stand, and between what."""
+    """Constraint rows of one kind: index of the first row, and lower and upper limits."""
 
     first: int
     lower: Array
@@ -79,22 +79,23 @@ class Rows:
 
     @property
     def places(self) -> slice:
-        """Among all."""
+        """Positions of these rows among all rows."""
         return slice(self.first, self.first + len(self.lower))
 
 
 @dataclass(eq=False)
 class Transcription:
-    """The unknowns of a programme, their bounds, and the values of its cost and of its rows.
+    """The unknowns of a nonlinear programme, their bounds, and the values of its cost and constraint rows.
 
     Parameters
     ----------
     meshes
         Edges of the intervals of each phase, from 0 to 1.
     smoothing
-        By how much the squared norm of a control is less than the square of the variable that bounds it.
+        Square root of the amount by which the squared norm of a control is less than the square of its bounding
+        variable.
     loose
-        A state whose given end follows from those of the others: it is asked for roughly, which leaves only its sign.
+        A state whose given final value follows from the others: it is prescribed loosely, which only decides its sign.
     """
 
     instance: Instance
@@ -118,7 +119,7 @@ class Transcription:
         before = np.tril(np.ones((self.phases, self.phases)), -1)
         own = np.equal.outer(self.phase, np.arange(self.phases))
         self.shares = before[self.phase] + own * place[:, None]
-        """Shares of the durations, row by row, in the time of a point."""
+        """Fractions of the durations of all phases that make up the time of each point, one row for each point."""
         self.steps = own * np.repeat(self.fractions, DEGREE)[:, None]
         self.weights = np.tile(WEIGHTS, self.intervals)
         unknown = self.instance.free
@@ -144,21 +145,21 @@ class Transcription:
         self.globals = np.arange(self.first_duration, self.unknowns)
 
     def unpacked(self, w: Array) -> tuple[Array, Array, Array, Array, float]:
-        """States (n, N + 1), variables (k, N), durations (P,), free parameters, and the initial time."""
+        """Return states (n, N + 1), variables (k, N), durations (P,), free parameters, and the initial time."""
         n, k = self.points.states, self.controls.count
         x = w[: self.first_variable].reshape(self.count + 1, n).T * self.sizes.states[:, None]
         v = w[self.first_variable : self.first_duration].reshape(self.count, k).T * self.sizes.variables[:, None]
         return x, v, *self._shared(w)
 
     def _shared(self, w: Array) -> tuple[Array, Array, float]:
-        """Durations (P,), free parameters, and the initial time."""
+        """Return durations (P,), free parameters, and the initial time."""
         durations = w[self.first_duration : self.first_free] * self.sizes.duration
         free = w[self.first_free : self.first_start] * self.sizes.free[: len(self.free)]
         start = w[-1] * self.sizes.duration if self.starts else self.instance.t0
         return durations, free, start
 
     def packed(self, x: Array, v: Array, durations: Array, free: Array, start: float) -> Array:
-        """The inverse of :meth:`unpacked`."""
+        """Return the vector of unknowns, the inverse of :meth:`unpacked`."""
         return np.concatenate(
             [
                 (x / self.sizes.states[:, None]).T.ravel(),
@@ -170,13 +171,13 @@ class Transcription:
         )
 
     def times(self, durations: Array, start: float) -> Array:
-        """Times of all points, the initial time first."""
+        """Return the times of all points, the initial time first."""
         return start + np.concatenate([[0.0], self.shares @ durations])
 
     def _local(self, w: Array) -> tuple[Array, Array, Array]:
-        """Local variables (l, N) of collocation points, steps (N,), and states (n, N + 1).
+        """Return local variables (l, N) of collocation points, steps (N,), and states (n, N + 1).
 
-        Those of the last unknowns are remembered.
+        The values for the last unknowns are cached.
         """
         key = w.tobytes()
         if self._last_local is None or self._last_local[0] != key:
@@ -187,14 +188,14 @@ class Transcription:
         return self._last_local[1]
 
     def _rates(self, w: Array) -> Array:
-        """Rates (n + 1, N) at collocation points; those of the last unknowns are remembered."""
+        """Return the rates (n + 1, N) at collocation points, cached for the last unknowns."""
         key = w.tobytes()
         if self._last_rates is None or self._last_rates[0] != key:
             self._last_rates = key, self.points.rates(self._local(w)[0])
         return self._last_rates[1]
 
     def _at(self, w: Array, points: Sequence[int]) -> Array:
-        """Local variables (l, K) of some points, the first being the start; those of controls count for nothing."""
+        """Return local variables (l, K) at some points, counted from the initial point; control variables are zero."""
         durations, free, start = self._shared(w)
         n, places = self.points.states, np.asarray(points)
         x = w[: self.first_variable].reshape(self.count + 1, n)[places].T * self.sizes.states[:, None]
@@ -235,7 +236,7 @@ class Transcription:
 
     @cached_property
     def limits(self) -> tuple[Array, Array]:
-        """Lower and upper limits of the rows."""
+        """Lower and upper limits of the constraint rows."""
         rows = self.kinds.values()
         return np.concatenate([one.lower for one in rows]), np.concatenate([one.upper for one in rows])
 
@@ -284,7 +285,7 @@ class Transcription:
         )
 
     def values(self, w: Array) -> Array:
-        """The rows."""
+        """Return the values of the constraint rows."""
         y, steps, x = self._local(w)
         n, d = self.points.states, DEGREE
         index = np.arange(self.intervals)[:, None] * d + np.arange(d + 1)
@@ -309,7 +310,7 @@ class Transcription:
         return self.points.states + self.controls.count
 
     def _places(self) -> list[int]:
-        """Places of points on the way."""
+        """Return the indices of the waypoints among the points."""
         return (DEGREE * np.cumsum([len(mesh) - 1 for mesh in self.meshes])[:-1]).tolist()
 
     def _way(self, y: Array) -> Array:
@@ -328,16 +329,16 @@ class Transcription:
         return np.asarray(length - (y[n + norm.spot] / unit) ** 2 + self.smoothing**2)
 
     def raised(self, multipliers: Array) -> float:
-        """By how much the smoothing of norms raises the cost, in units of its size and to first order.
+        """Return by how much smoothing of norms raises the scaled cost, to first order.
 
-        Its derivative by the squared smoothing is the sum of the multipliers of their rows (the envelope theorem).
-        Where norms vanish, the cost rises linearly with the smoothing, so that this counts twice.
+        The derivative with respect to the squared smoothing is the sum of the multipliers of the norms' rows (envelope
+        theorem). If norms vanish, the cost rises linearly with the smoothing, so that this derivative counts twice.
         """
         rows = [self.kinds[f"norm{k}"] for k, norm in enumerate(self.controls.norms) if norm.spot is not None]
         return 2.0 * self.smoothing**2 * float(sum(multipliers[row.places].sum() for row in rows))
 
     def objective(self, w: Array) -> float:
-        """The cost in units of its size."""
+        """Return the cost in units of its scale."""
         _, steps, _ = self._local(w)
         running = self._rates(w)[-1] @ (steps * self.weights)
         return float(running + self.points.cost(self._at(w, [self.count]))[0, 0]) / self.sizes.cost

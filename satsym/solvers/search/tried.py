@@ -1,4 +1,4 @@
-"""What starts of a search came to beside an answer, and what is remembered of them beside the next, cheaper one."""
+"""Results of starts of a search, in comparison with an answer, and the results kept for the next, cheaper answer."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Answer = TypeVar("Answer")
 
 @dataclass(frozen=True)
 class Tried(Generic[Answer]):
-    """What a start came to beside an answer.
+    """Result of a start of the search, in comparison with an answer.
 
     Attributes
     ----------
     plan
-        How it began.
+        Plan of the start.
     cost
-        That of the answer where both seem to be one. NaN where the start was not solved, and where neither an extremal
-        nor finer meshes confirm that its motion is cheaper.
+        Cost of the motion, or of the answer if both seem to be the same. NaN if the start was not solved, or if neither
+        an extremal nor finer meshes confirm that its motion is cheaper.
     exact
-        The extremal, if it costs less than the answer.
+        The extremal if it costs less than the answer, otherwise ``None``.
     unsettled
-        Whether its motion seems to cost less, but no mesh settles that.
+        Whether the motion seems to cost less, although its cost does not converge on finer meshes.
     """
 
     plan: Plan
@@ -43,11 +43,11 @@ class Past:
     answers
         Number of these answers.
     first
-        Times and states of the first of them, along which the coarse mesh is laid.
+        Times and states of the first of these answers, which grade the coarse mesh.
     tried
-        What starts came to, in their order.
+        Results of the starts, in their order.
     seen
-        Costs on the coarse mesh, and what each came to.
+        Pairs of the cost on the coarse mesh and the final cost of each motion.
     """
 
     answers: int = 0

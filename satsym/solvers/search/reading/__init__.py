@@ -1,1 +1,1 @@
-"""From the motion of a programme to arcs and junctions, which Newton's method then makes exact."""
+"""Conversion of the solution of a nonlinear programme into arcs and junctions, which Newton's method makes exact."""

@@ -1,4 +1,4 @@
-"""Arcs on the boundaries of path constraints, read from a motion and made exact."""
+"""Arcs on the boundaries of path constraints, identified in an approximate motion and made exact."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.structure import BOUNDARY, constraint_of
 
 UNMET = "no path constraint is ever active"
-"""What is said of answers that meet no boundary."""
+"""Message for answers on which no path constraint is active."""
 
 WORK = 200_000
-"""Columns that may be linearised for one motion."""
+"""Maximum number of columns that may be linearised for one motion."""
 
 SHORTEST = (3, 8)
-"""Points up to which singular arcs between bounds are none, one number after the other."""
+"""Maximum numbers of points of a singular arc between bounds that is ignored, tried one after the other."""
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """The extremal that a motion is near, with arcs on boundaries where it has any; ``None`` where there is none."""
+    """Return the extremal near a motion, with boundary arcs if it has any; ``None`` if none is found."""
     own = replace(limits, meter=Meter(), work=WORK)
     with np.errstate(all="ignore"):
         found = tried(partial(_in_arcs, instance, at, own))
@@ -45,7 +45,7 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 
 
 def _without_contacts(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """The extremal of the problem without path constraints, where it keeps to these."""
+    """Return the extremal of the problem without path constraints if it satisfies these, otherwise ``None``."""
     at_rest = levels.exact if instance.model.spec.switching else None
     found = at_rest(instance, at, limits) if at_rest else collocated.exact(instance, at)
     if found is None or violation(found) > SLACK:
@@ -54,7 +54,7 @@ def _without_contacts(instance: Instance, at: Motion, limits: Limits) -> Solutio
 
 
 def _in_arcs(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """The extremal of exact arcs, some of them on boundaries; ``None`` where there is none, or none is met."""
+    """Return the extremal in exact arcs with boundary arcs; ``None`` if none is found or no constraint is active."""
     began = time.perf_counter()
     if instance.model.spec.switching:
         level = _levelled(instance, at, limits)
@@ -71,13 +71,13 @@ def _in_arcs(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 
 
 def _begun(at: Motion, structure: Structure) -> Arcs:
-    """The unknowns of a structure from a motion."""
+    """Return the initial unknowns of a structure of arcs, taken from a motion."""
     near = at.times, np.concatenate([at.x, at.lam]), at.nu
     return begun(at.instance, structure, near, float(at.times[-1]))
 
 
 def _levelled(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
-    """The extremal whose controls keep to bounds and boundaries as they do in a motion; ``None`` without boundaries."""
+    """Return the extremal whose controls have the levels that they have in a motion; ``None`` without boundary arcs."""
     for shortest in SHORTEST:
         guess = boundary_levels.read(at, shortest)
         if any(level >= BOUNDARY for row in guess.structure.levels for level in row):
@@ -88,7 +88,7 @@ def _levelled(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
 
 
 def _with_events(instance: Instance, exact: Exact, solution: Solution) -> Solution:
-    """The solution with the events of entering and leaving boundaries."""
+    """Return the solution with events at the entries to and exits from boundaries."""
     names, events = [one.name for one in instance.model.spec.path_constraints], list[Event]()
     structure, at = exact.refined.structure, exact.refined.at
     for row, own in zip(structure.levels, structure.by_control(at.times), strict=True):

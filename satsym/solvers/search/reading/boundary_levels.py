@@ -1,6 +1,6 @@
-"""Levels that controls keep to beside path constraints, read from a motion: at bounds, on boundaries, or singular.
+"""Levels of controls under path constraints, identified in a motion: at bounds, on boundaries, or singular.
 
-What is active has a multiplier that is larger, in its measure and that of the cost, than its slack is in its own.
+A constraint counts as active if its multiplier, relative to the constraint and the cost, exceeds its relative slack.
 """
 
 from __future__ import annotations
@@ -27,19 +27,20 @@ from satsym.solvers.switching.structure import (
 from satsym.solvers.switching.trajectory import runs
 
 SHORT_ARC, OFF = 0.5, 1e-6
-"""Length of an arc at an end that no interval shows, in intervals; and share of its size that a boundary may be off."""
+"""Length of an arc at an end, in intervals of the mesh, that is added if no interval shows it; and the largest distance
+from a boundary, relative to the constraint's magnitude, that counts as being on it."""
 
 NEAR_BOUNDARY = 1e-2
-"""Share of a constraint's terms that its slacks are measured by where none is larger."""
+"""Minimum scale of a constraint's slacks, relative to the constraint's terms."""
 
 
 def read(at: Motion, shortest: int) -> Guess:
-    """The structure of a motion, its times, and where it leads.
+    """Return the structure of a motion, its switching times, and its states and costates.
 
     Parameters
     ----------
     shortest
-        Points up to which arcs between bounds are none: a switch falls into one of them.
+        Maximum number of points of a singular arc between bounds that is ignored, as a switch lies between its points.
     """
     held = Along(at)
     edges = 0.5 * (at.times[1:] + at.times[:-1])
@@ -57,7 +58,10 @@ def read(at: Motion, shortest: int) -> Guess:
 
 
 def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[int], list[float]]:
-    """Levels with a brief arc to a boundary that the start is not on, and one from a boundary that the end is off."""
+    """Return levels and times with a short arc added where the motion starts or ends off the boundary it leads to.
+
+    At the start this arc leads to the boundary, at the end away from it.
+    """
     instance, x, end = held.instance, held.at.x, float(held.times[-1])
     for first, place, time in ((True, 0, instance.t0), (False, -1, end)):
         level, brief = row[place], SHORT_ARC * float(held.reaches[place])
@@ -74,12 +78,12 @@ def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[in
 
 
 def _with_jumps(held: Along, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
-    """Levels with jumps where a boundary is left for the bound that pushes beyond it, or reached from the other one.
+    """Return levels marked with jumps where a boundary is left for, or reached from, a bound that pushes beyond it.
 
     Parameters
     ----------
     times, x
-        When levels change, and states there, shapes (K,) and (n, K).
+        Times at which levels change, and the states there, shapes (K,) and (n, K).
     """
     instance, sides, found = held.instance, {LOWER: -1.0, UPPER: 1.0}, list(row)
     for place, level in enumerate(row):
@@ -98,7 +102,7 @@ def _with_jumps(held: Along, row: list[int], times: Array, x: Array) -> tuple[in
 
 
 def _levels(held: Along, control: int) -> NDArray[np.int64]:
-    """The level of a control at each point."""
+    """Return the level of a control at each point."""
     instance, spec = held.instance, held.instance.model.spec
     names = [one.name for one in spec.path_constraints]
     active = _active(held)
@@ -113,7 +117,7 @@ def _levels(held: Along, control: int) -> NDArray[np.int64]:
 
 
 def _active(held: Along) -> NDArray[np.bool_]:
-    """Whether each constraint is active, shape (h, N)."""
+    """Return whether each constraint is active at each point, shape (h, N)."""
     s, z, steps = held.slacks, held.pushes, held.at.steps / held.at.steps.sum()
     room = np.maximum(s.max(axis=1, keepdims=True), NEAR_BOUNDARY * held.rooms[:, None])
     unit = max(abs(held.at.cost), 1e-12) * steps
@@ -121,7 +125,7 @@ def _active(held: Along) -> NDArray[np.bool_]:
 
 
 def _without_brief(levels: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:
-    """Levels less brief runs of no bound and no boundary: each half is taken for what is beside it."""
+    """Return levels without short singular runs; each half of a run takes the level beside it."""
     found = levels.copy()
     for first, last in runs(levels == SINGULAR):
         if last - first < shortest and last - first + 1 < len(levels):

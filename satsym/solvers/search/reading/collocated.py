@@ -1,4 +1,4 @@
-"""From a motion to the extremal that collocation finds next to it, where its control may jump or meet bounds."""
+"""The extremal that collocation finds near a motion, if its control may jump or reach bounds."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from satsym.solvers.cold_start.by_newton import SAMPLES
 from satsym.solvers.search.motion import Motion
 
 WORK = 20_000
-"""Columns that may be linearised from a motion."""
+"""Maximum number of columns that may be linearised from a motion."""
 
 
 def exact(instance: Instance, at: Motion) -> Solution | None:
-    """The extremal that collocation finds from a motion with little work; ``None`` where there is none."""
+    """Return the extremal that collocation finds from a motion with limited work; ``None`` if it finds none."""
     from satsym.solvers import two_point
 
     found = two_point.solve(replace(guessing(instance, at.times, at.x, at.lam), work=WORK))
@@ -27,7 +27,7 @@ def exact(instance: Instance, at: Motion) -> Solution | None:
 
 
 def guessing(instance: Instance, times: Array, x: Array, lam: Array) -> Instance:
-    """An instance that guesses states, costates and the duration of a motion."""
+    """Return an instance whose initial guess is given by the states, costates and duration of a motion."""
     names, even = instance.model.spec.state_names, np.linspace(times[0], times[-1], SAMPLES)
     states, costates = (
         {name: tuple(np.interp(even, times, row).tolist()) for name, row in zip(names, rows, strict=True)}

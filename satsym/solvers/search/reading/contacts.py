@@ -1,8 +1,8 @@
-"""Contacts with the boundaries of path constraints, read from a motion: where multipliers outweigh slacks.
+"""Contacts with the boundaries of path constraints, identified in a motion where multipliers outweigh slacks.
 
-Multipliers and slacks are each compared in their own measure. Neighbouring points make an arc, a few of them alone a
-touch point. Two touch points between which the multiplier of a boundary arc vanishes are taken for one arc later
-(:mod:`satsym.solvers.constrained.revision`).
+A contact is a boundary arc or a touch point. Multipliers and slacks are each compared relative to their scales.
+Neighbouring points form an arc, a few isolated ones a touch point. Two touch points between which the multiplier of a
+boundary arc would vanish are joined to one arc later (:mod:`satsym.solvers.constrained.revision`).
 """
 
 from __future__ import annotations
@@ -22,33 +22,34 @@ from satsym.solvers.search.motion import Motion
 from satsym.solvers.switching.trajectory import runs
 
 CLOSE_SLACK = 1e-3
-"""A slack of this share of the largest is small: points meet a boundary only nearly."""
+"""Slack, relative to the largest one, below which a point counts as close to a boundary."""
 
 SMALL_SLACK = 1e-2
-"""Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
+"""Minimum scale of the slacks, relative to the terms of the constraint."""
 
 NOTHING = 1e-6
-"""Share of the costates below which what a constraint adds to them is nothing."""
+"""Contribution of a constraint to the costates, relative to these, below which it is ignored."""
 
 ON_BOUNDARY = 1e-9
-"""Share of its size along the way by which a constraint may be off its boundary where a motion starts on it."""
+"""Largest distance from the boundary, relative to the constraint's magnitude, at which a motion counts as starting on
+it."""
 
 INSTANT = 2
-"""Steps from point to point within which multipliers of a touch point are spread."""
+"""Maximum number of steps between points over which the multiplier of a touch point is spread."""
 
 PARALLEL = 1.0 - 1e-6
-"""Squared cosine of the effects of two constraints on the controls from which on they are the same, or opposed."""
+"""Squared cosine between the effects of two constraints on the controls above which these count as parallel."""
 
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """Path constraints along a motion, at its points but the first."""
+    """Path constraints along a motion, at all points but the first."""
 
     at: Motion
 
     @property
     def instance(self) -> Instance:
-        """The instance with the values that were found for what it leaves free."""
+        """The instance with the values that were found for its free quantities."""
         return self.at.instance
 
     @property
@@ -58,30 +59,30 @@ class Along:
 
     @cached_property
     def kept(self) -> Array:
-        """Which constraints count where, ones and zeros (h, N): not at an end at which given states decide them."""
+        """Ones and zeros (h, N): zero for a constraint at the final time if given final states determine it."""
         table = np.ones(self.at.pushes.shape)
         table[decided_at_end(self.instance), -1] = 0.0
         return table
 
     @cached_property
     def pushes(self) -> Array:
-        """Multipliers times the lengths of time that belong to the points, shape (h, N)."""
+        """Multipliers times the time weights of the points, shape (h, N)."""
         return np.maximum(self.at.pushes, 0.0) * self.kept
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
-        """Gradients by states and by controls, shapes (h, n, N) and (h, m, N)."""
+        """Gradients of the constraints by states and by controls, shapes (h, n, N) and (h, m, N)."""
         place = self.instance, self.times, self.at.x[:, 1:], self.at.u
         return gradients(*place), effects(*place)
 
     @cached_property
     def slacks(self) -> Array:
-        """By how much constraints are below zero, shape (h, N)."""
+        """Slacks, the amounts by which constraints are below zero, shape (h, N)."""
         return np.maximum(-values(self.instance, self.times, self.at.x[:, 1:], self.at.u), 0.0)
 
     @cached_property
     def rooms(self) -> Array:
-        """What each constraint is measured by, shape (h,): itself or, where these are larger, its terms."""
+        """Scale of each constraint, shape (h,): its largest slack or, if larger, the largest sum of its terms."""
         by_x, by_u = self.slopes
         terms = (np.abs(by_x) * np.abs(self.at.x[:, 1:])).sum(axis=1) + (np.abs(by_u) * np.abs(self.at.u)).sum(axis=1)
         found = np.maximum(self.slacks, terms).max(axis=1)
@@ -89,18 +90,18 @@ class Along:
 
     @cached_property
     def reaches(self) -> Array:
-        """The longer of the steps to the neighbours of each point, shape (N,)."""
+        """The longer of the two steps beside each point, shape (N,)."""
         steps = np.diff(self.at.times)
         return np.maximum(steps, np.append(steps[1:], 0.0))
 
 
 def read(at: Motion, resting: bool = False) -> Structure:
-    """The structure that a motion shows.
+    """Return the structure of contacts and waypoints that a motion shows.
 
     Parameters
     ----------
     resting
-        Whether contacts between which slacks stay small are one, though multipliers vanish there.
+        Whether contacts are joined if slacks between them stay small, although multipliers vanish there.
     """
     held, found = Along(at), list[Contact]()
     by_x, costates = held.slopes[0], np.abs(at.lam).max(axis=1)[:, None]
@@ -117,27 +118,27 @@ def read(at: Motion, resting: bool = False) -> Structure:
 
 
 def _passages(at: Motion) -> tuple[Passage, ...]:
-    """The points on the way, when they are passed, and by how much costates jump there."""
+    """Return the waypoints with their times and the multipliers of the costate jumps there."""
     which, first = conditions(at.instance), len(at.instance.model.spec.path_constraints)
     jumps = (tuple((k, float(at.jumps[k - first])) for k in own) for own in which)
     return tuple(Passage(time, own) for time, own in zip(at.passed.tolist(), jumps, strict=True))
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Flags whose single gaps are closed."""
+    """Return flags with isolated gaps closed."""
     found = flags.copy()
     found[1:-1] |= flags[:-2] & flags[2:]
     return found
 
 
 def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Pairs of the first and the last place that counts, in each run of those that are near."""
+    """Return the first and last flagged position in each run of positions near the boundary."""
     inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
     return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 
 
 def _contact(held: Along, constraint: int, order: int, begins: int, ends: int) -> Contact:
-    """An arc or a touch point where multipliers count."""
+    """Return an arc or a touch point from the interval in which multipliers count."""
     times, z = held.times, held.pushes[constraint]
     if order > 1 and ends - begins <= INSTANT:
         weight = z[begins : ends + 1]
@@ -152,7 +153,7 @@ def _contact(held: Along, constraint: int, order: int, begins: int, ends: int) -
 
 
 def _with_ends(held: Along, contact: Contact) -> Contact:
-    """A contact that holds from the start on, or until the end, if it does."""
+    """Return the contact, extended to the initial or final time if the constraint is active there, else unchanged."""
     one, order = held.instance, held.instance.model.spec.path_constraints[contact.constraint].order
     opens = not contact.touches and contact.start - one.t0 < 1.5 * held.reaches[0] and _on_boundary(held, contact)
     end, step = float(held.times[-1]), 1.5 * float(held.reaches[-1])
@@ -164,9 +165,9 @@ def _with_ends(held: Along, contact: Contact) -> Contact:
 
 
 def _meeting(held: Along, contacts: list[Contact]) -> list[Contact]:
-    """Contacts less the gaps of a step between constraints that hold controls and follow each other.
+    """Return contacts with gaps of one step closed between control constraints that follow each other directly.
 
-    Those do that cannot be active at once: they push controls the same way, or against each other.
+    These are constraints that cannot be active at the same time, because they affect the controls in parallel.
     """
     found, effect = sorted(contacts, key=lambda one: one.middle), held.slopes[1]
     orders = [one.order for one in held.instance.model.spec.path_constraints]
@@ -184,7 +185,7 @@ def _meeting(held: Along, contacts: list[Contact]) -> list[Contact]:
 
 
 def _on_boundary_at_end(held: Along, contact: Contact) -> bool:
-    """Whether a constraint may be on its boundary at the end, where given states alone may decide that it is not."""
+    """Return whether a constraint may be active at the final time, unless given final states exclude it."""
     one, constraint = held.instance, contact.constraint
     if one.tf is None or held.kept[constraint, -1] > 0.0:
         return True
@@ -194,7 +195,7 @@ def _on_boundary_at_end(held: Along, contact: Contact) -> bool:
 
 
 def _on_boundary(held: Along, contact: Contact) -> bool:
-    """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
+    """Return whether a constraint is active at the initial time, or may be because it involves the control."""
     one, constraint = held.instance, contact.constraint
     if one.model.spec.path_constraints[constraint].order == 0:
         return True

@@ -1,9 +1,9 @@
-"""From the solution of a programme to arcs and junctions, which Newton's method then makes exact.
+"""Conversion of the solution of a programme into arcs and junctions, which Newton's method makes exact.
 
 Norms that switch are read from their means over the intervals of the programme, corners of other controls at its
-points. The law of the derivation is continuous where a bound is met, but has a corner there. Each corner is a junction,
-at which a function vanishes: the slope of H by a control in a box, with that control at the bound, or by how much the
-norm of a vector that no bound held would exceed its limit.
+points. The control law is continuous where a bound becomes active, but has a corner there. Each corner is a junction,
+where a function vanishes: the derivative of H with respect to a control at its bound in a box, or the excess of the
+norm of the unbounded control vector over its limit.
 """
 
 from __future__ import annotations
@@ -29,38 +29,39 @@ from satsym.solvers.search.motion import Motion
 from satsym.solvers.search.transcription import DEGREE
 
 FEWEST, DENSITY = 4, 1.0
-"""Intervals of an arc, at least, and how many there are for each of the programme's."""
+"""Minimum number of intervals of an arc, and number of intervals for each interval of the programme."""
 
 LOOKED = 50
-"""Places on an arc at which signs are looked at."""
+"""Number of points of an arc at which signs are checked."""
 
 ROUNDS = 3
-"""How often corners are read anew."""
+"""Maximum number of times that corners are read again."""
 
 SMALLEST_NORM = 1e-100
-"""Norm in place of none, of which laws have no direction."""
+"""Norm that replaces a zero norm, for which control laws have no direction."""
 
 SMALL_SIZE = 1e-3
-"""Share of the largest size that the size of a state or a costate is, at least."""
+"""Minimum scale of a state or a costate, relative to the largest scale."""
 
 Arcs = tuple[tuple[Law, ...], tuple[Junction, ...], Array]
-"""Laws, the junctions between them, and where arcs begin and end."""
+"""Control laws of arcs, junctions between the arcs, and times at which arcs begin and end."""
 
 MOST_CORNERS = 40
-"""Corners of an extremal. More are the noise of a control that stays next to a bound."""
+"""Maximum number of corners of an extremal. A larger number is the noise of a control that stays near a bound."""
 
 SAMPLES, INSIDE = 200, 1e-6
-"""Places on an arc between which corners are looked for, and the share of the arc at either end that is left out."""
+"""Number of points on an arc between which corners are searched for, and fraction of the arc at each end that is left
+out."""
 
 MET = 1e-2
-"""How far a law may be from a bound at a corner that is read between two times, relative to that or to one."""
+"""Largest distance of a control law from a bound at a corner, relative to the bound or to 1, whichever is larger."""
 
 JUMPED = 1e-3
-"""Share of the largest control by which a law jumps from one minimiser to another."""
+"""Change of a control law, relative to the largest control, that counts as a jump between minimisers."""
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Extremal | None:
-    """The extremal that a motion is near; ``None`` where its arcs are of a kind that is not read, or none is near."""
+    """Return the extremal near a motion; ``None`` if its arcs are of an unsupported kind, or none is near."""
     with np.errstate(all="ignore"):
         if not instance.model.spec.throttled:
             return _with_corners(instance, at, limits)
@@ -70,9 +71,9 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Extremal | None:
 
 
 def _with_corners(instance: Instance, at: Motion, limits: Limits) -> Extremal | None:
-    """The extremal with one law that a motion is near, whose corners are junctions.
+    """Return the extremal near a motion, with a single control law whose corners are junctions.
 
-    The corners of what is found may be others than those that the motion had; then it begins anew with these.
+    If the extremal has other corners than the motion, the iteration restarts with these.
     """
     bounds, law = _bounds_of(instance), derived(instance, instance.control_set.arguments)
     z = np.concatenate([at.x, at.lam])
@@ -97,7 +98,7 @@ def _with_corners(instance: Instance, at: Motion, limits: Limits) -> Extremal | 
 
 
 def _solved(instance: Instance, at: Motion, arcs: Arcs, limits: Limits) -> Extremal | None:
-    """What Newton's method finds from a motion and its arcs."""
+    """Return the extremal that Newton's method finds from a motion and its arcs, or ``None``."""
     laws, junctions, edges = arcs
     span = float(edges[-1] - edges[0])
     meshes = tuple(_mesh(at, a, b) for a, b in pairwise(edges.tolist()))
@@ -114,7 +115,7 @@ def _solved(instance: Instance, at: Motion, arcs: Arcs, limits: Limits) -> Extre
 
 
 def _mesh(at: Motion, begin: float, end: float) -> Array:
-    """Edges from 0 to 1 of the intervals of an arc, as dense as those of the programme that found the motion."""
+    """Return edges from 0 to 1 of the intervals of an arc, as dense as the mesh of the programme."""
     edges = at.times[::DEGREE]
     count = np.arange(len(edges)) * DENSITY
     first, last = np.interp((begin, end), edges, count)
@@ -124,7 +125,7 @@ def _mesh(at: Motion, begin: float, end: float) -> Array:
 
 
 def _minimises(found: Extremal) -> bool:
-    """Whether norms are at the bounds at which H is least, all along: slopes of H by them have their signs."""
+    """Return whether all norms are at bounds that minimise H, by the signs of the derivatives of H."""
     problem, v = found.problem, found.unknown
     p, n = problem.given(v), problem.n
     shares = np.linspace(0.0, 1.0, LOOKED + 2)[1:-1]
@@ -148,10 +149,10 @@ def _runs(labels: list[int]) -> list[tuple[int, int, int]]:
 
 
 def read_norm(at: Motion) -> tuple[list[int], Array] | None:
-    """Whether a norm, or a control that switches, is at its upper bound on each arc, and where arcs begin and end.
+    """Return whether a norm or switching control is at its upper bound on each arc, and the times of the arcs' ends.
 
-    A programme's control may jump from point to point within an interval, so that its mean over each interval is read;
-    arcs last as long as they must to do what these means do. ``None`` where several parts switch.
+    The control of a programme may jump between points within an interval, so its mean over each interval is used; arcs
+    have the lengths that reproduce these means. ``None`` if several control sets switch.
     """
     parts = [(places, part) for places, part in at.instance.control_set.parts if part.throttled]
     if len(parts) != 1:
@@ -173,7 +174,7 @@ def read_norm(at: Motion) -> tuple[list[int], Array] | None:
 
 
 def _throttled(at: Motion) -> Arcs | None:
-    """Arcs of the largest and the least norm of a vector, or of a single control that switches."""
+    """Return arcs of the largest and smallest norm of a vector or of a switching control, or ``None``."""
     instance, seen = at.instance, read_norm(at)
     if seen is None:
         return None
@@ -212,23 +213,24 @@ def _slope(instance: Instance, bounds: tuple[float, ...]) -> Callable[[Array, Ar
 class _Corner(Junction):
     """A junction at a bound of a control in a box.
 
-    The slope of H by an angle that is at a bound vanishes half a turn from the free angle as well, which is no corner.
+    The derivative of H with respect to an angle at its bound also vanishes half a turn from the free angle; this is no
+    corner.
     """
 
     met: Callable[[float, Array, Parameters], bool] = lambda t, z, p: True
-    """Whether the law is at the bound, at a time and its states and costates (2n, 1)."""
+    """Function that returns whether the law is at the bound, from time, states and costates (2n, 1), and parameters."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Read:
-    """Corners along a motion, in order: their times, and the junctions by their places in the list of all."""
+    """Corners along a motion in order of time: their times, and the indices of their junctions in the list of all."""
 
     times: Array
     which: tuple[int, ...]
 
 
 def _bounds_of(instance: Instance) -> list[Junction]:
-    """A junction for each finite bound of the controls."""
+    """Return a junction for each finite bound of the controls."""
     within = instance.control_set
     parts = within.parts or ((tuple(range(len(instance.model.spec.controls))), within),)
     return [one for places, part in parts for one in _bounds(instance, places, part)]
@@ -248,7 +250,7 @@ def _bounds(instance: Instance, places: tuple[int, ...], part: ControlSet) -> It
 
 
 def _slope_at(instance: Instance, place: int, bound: float) -> Vanishing:
-    """The slope of H by a control that is at a bound."""
+    """Return a function that gives the derivative of H with respect to a control at its bound."""
     model, n, arguments = instance.model, len(instance.initial), instance.control_set.arguments
 
     def vanishing(t: Array, z: Array, p: Parameters) -> Array:
@@ -261,7 +263,7 @@ def _slope_at(instance: Instance, place: int, bound: float) -> Vanishing:
 
 
 def _met(instance: Instance, place: int, bound: float) -> Callable[[float, Array, Parameters], bool]:
-    """Whether the law of a control is at a bound."""
+    """Return a function that tells whether the law of a control is at a bound."""
     arguments = instance.control_set.arguments
 
     def met(t: float, z: Array, p: Parameters) -> bool:
@@ -272,7 +274,7 @@ def _met(instance: Instance, place: int, bound: float) -> Callable[[float, Array
 
 
 def _beyond(instance: Instance, places: tuple[int, ...], norm: float) -> Vanishing:
-    """By how much a vector that no bound held would exceed a norm."""
+    """Return a function that gives the excess of the norm of an unbounded control vector over a given norm."""
     within = instance.control_set
     free = [replace(part, radius=math.inf, inner=0.0) if at == places else part for at, part in within.parts]
     parts = tuple((at, part) for (at, _), part in zip(within.parts, free, strict=True))
@@ -286,15 +288,15 @@ def _beyond(instance: Instance, places: tuple[int, ...], norm: float) -> Vanishi
 
 
 def _as(z: Array, values: Array) -> Array:
-    """Values as real numbers where the arguments are."""
+    """Return real values if the arguments are real, otherwise the complex values."""
     return values if np.iscomplexobj(z) else np.asarray(values.real)
 
 
 def _law(instance: Instance, t: Array, z: Array, p: Parameters, arguments: tuple[float, ...]) -> Array:
-    """The control law (m, M) with some bounds. Where it has angles, how it moves with an imaginary step is left out.
+    """Return the control law (m, M) for given bounds; for control sets with angles, imaginary steps are ignored.
 
-    Functions of an angle have none for complex numbers. What H loses by the angles is of second order, so Newton's
-    method is a little slower then, unless controls in boxes and angles do not meet in H.
+    Functions of an angle are not defined for complex numbers. The effect of the angles on H is of second order, so that
+    Newton's method only converges a little more slowly, unless controls in boxes and angles do not interact in H.
     """
     model, n = instance.model, len(instance.initial)
     if instance.control_set.angles:
@@ -304,16 +306,16 @@ def _law(instance: Instance, t: Array, z: Array, p: Parameters, arguments: tuple
 
 
 def _read_corners(bounds: list[Junction], along: Callable[[Array], Array], times: Array, p: Parameters) -> _Read | None:
-    """The corners of the law along a motion; ``None`` where there are too many, or arithmetic fails.
+    """Return the corners of the law along a motion; ``None`` if there are too many or values are not finite.
 
     Parameters
     ----------
     bounds
-        Of the instance, from :func:`_bounds_of`.
+        Junctions at the bounds of the instance's controls, from :func:`_bounds_of`.
     along
-        States above costates (2n, M) at times (M,).
+        Function that returns states above costates (2n, M) at times (M,).
     times
-        Increasing, between which corners are looked for (N,).
+        Increasing times (N,) between which corners are searched for.
     """
     found, z = list[tuple[float, int]](), along(times)
     for number, bound in enumerate(bounds):
@@ -337,7 +339,7 @@ def _read_corners(bounds: list[Junction], along: Callable[[Array], Array], times
 
 
 def _read_again(bounds: list[Junction], extremal: Extremal) -> _Read | None:
-    """The corners of the law along an extremal, at whose junctions it may have others."""
+    """Return the corners of the law along an extremal, which may differ from its junctions."""
     shares, edges = np.linspace(INSIDE, 1.0 - INSIDE, SAMPLES), extremal.times
     if not (np.diff(edges) > 0.0).all():
         return None
@@ -346,7 +348,7 @@ def _read_again(bounds: list[Junction], extremal: Extremal) -> _Read | None:
 
 
 def _values_at(extremal: Extremal, times: Array) -> Array:
-    """States above costates (2n, M) of an extremal at times (M,)."""
+    """Return states above costates (2n, M) of an extremal at times (M,)."""
     edges = extremal.times
     arc = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, len(edges) - 2)
     shares = (times - edges[arc]) / (edges[arc + 1] - edges[arc])
@@ -357,7 +359,7 @@ def _values_at(extremal: Extremal, times: Array) -> Array:
 
 
 def _jumps_along(extremal: Extremal) -> bool:
-    """Whether a law without closed form jumps from one minimiser of H to another, which is no corner."""
+    """Return whether a law without closed form jumps from one minimiser of H to another, which is no corner."""
     problem = extremal.problem
     if not problem.instance.model.spec.stationary:
         return False

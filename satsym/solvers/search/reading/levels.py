@@ -1,4 +1,4 @@
-"""Arcs of controls at their bounds, read from a motion by its switching functions, and made exact."""
+"""Arcs of controls at their bounds, identified in a motion by its switching functions, and made exact."""
 
 from __future__ import annotations
 
@@ -26,32 +26,33 @@ from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess, Stru
 from satsym.solvers.switching.throttled import signs, switched
 
 POINTS, NEAR_END, FAINT_COSTATE = 401, 1e-3, 1e-9
-"""Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
-of ends that it meets, relative to sizes."""
+"""Number of times at which the uncontrolled motion is evaluated; largest distance from the final state, relative to the
+state's magnitude, that counts as arriving; relative magnitude of costates of the final states that are reached."""
 
 AT_BOUND = 0.02
-"""Share of the width of its range by which a programme's control is off a bound at which it is."""
+"""Largest distance of a control from its bound, relative to its range, that counts as being at the bound."""
 
 RAISED = 0.03
-"""Share by which switching functions are raised and lowered: arcs in which they hardly pass the weight of a magnitude
-may be shorter than an interval of the mesh, on which they then do not reach it."""
+"""Relative amount by which switching functions are raised and lowered for further guesses. An arc on which a switching
+function exceeds its threshold only slightly may be shorter than a mesh interval and invisible on the mesh."""
 
 CLOSE_SWITCHES = 0.02
-"""Share of the time between the first and the last switch by which switching times of guesses differ that are one."""
+"""Largest difference of switching times, relative to the time between the first and the last switch, at which two
+guesses of the same structure count as equal."""
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """The extremal of exact arcs that a motion is near, as an answer; ``None`` where there is none."""
+    """Return the extremal in exact arcs near a motion, as a solution; ``None`` if none is found."""
     began = time.perf_counter()
     found = arcs(instance, at, limits)
     return None if found is None else answered(instance, found, (), began)
 
 
 def arcs(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
-    """The extremal of exact arcs that a motion is near; ``None`` where there is none.
+    """Return the extremal in exact arcs near a motion; ``None`` if none is found.
 
-    Controls are taken for bang-bang first; where that leads to no extremal, and they are off their bounds for long,
-    for singular there.
+    Controls are assumed to be bang-bang first. If this fails and controls are off their bounds for long, they are
+    assumed to be singular there.
     """
     known: list[Guess] = []
     with np.errstate(all="ignore"):
@@ -65,7 +66,7 @@ def arcs(instance: Instance, at: Motion, limits: Limits) -> Exact | None:
 
 
 def at_rest(instance: Instance, limits: Limits) -> Solution | None:
-    """No norms at all for the whole of a given time, where that arrives and is an extremal."""
+    """Return the uncontrolled motion as a solution if it reaches the end and is an extremal, otherwise ``None``."""
     began = time.perf_counter()
     with np.errstate(all="ignore"):
         found = _at_rest(instance, limits)
@@ -95,7 +96,7 @@ def _at_rest(instance: Instance, limits: Limits) -> Exact | None:
 
 
 def _apart(one: Guess, other: Guess) -> bool:
-    """Whether two guesses of one structure have other switching times."""
+    """Return whether two guesses of the same structure have different switching times."""
     lasting = float(np.ptp(one.times)) if len(one.times) else 0.0
     return bool(np.abs(one.times - other.times).max(initial=0.0) > CLOSE_SWITCHES * lasting)
 
@@ -132,10 +133,11 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
 
 
 def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sample]:
-    """Where controls are at neither bound for long, shape (m, N), and a sample whose signs are those of the others.
+    """Return where controls are off both bounds for long, shape (m, N), and a sample with the signs of other arcs.
 
-    A programme's control may jump between its bounds from point to point where it is singular. So it counts as off its
-    bounds between any two stretches in which it is at one for long, or, at either end of the motion, for an interval.
+    The control of a programme may jump between its bounds from point to point on a singular arc. It therefore counts as
+    off its bounds between any two stretches that it spends at a bound for long or, at either end of the motion, for an
+    interval.
     """
     low, high = instance.control_set.box
     edge, lasting = AT_BOUND * (high - low), float(np.ptp(seen.times))
@@ -157,21 +159,22 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
 
 
 def _stretches(labels: NDArray[Any]) -> list[tuple[int, int, Any]]:
-    """First and last places of equal labels, and these."""
+    """Return first and last index and value of each run of equal labels."""
     edges = np.flatnonzero(np.diff(np.asarray(labels, int))) + 1
     return [(int(a), int(b) - 1, labels[a]) for a, b in pairwise([0, *edges.tolist(), len(labels)])]
 
 
 def _filled(instance: Instance, seen: Sample) -> Array:
-    """How far what switches is from its lower to its upper bound, shape (r, N)."""
+    """Return switching controls as a fraction of the range between their bounds, shape (r, N)."""
     low, high = (np.array(bounds)[:, None] for bounds in instance.control_set.switching)
     return np.clip((switched(instance, seen.u) - low) / np.where(high > low, high - low, 1.0), 0.0, 1.0)
 
 
 def _paused(first: Guess, seen: Sample) -> Guess:
-    """A guess that never switches with a short arc at the lower bound where the switching function is largest.
+    """Return a guess with a short arc at the lower bound added where the switching function is largest.
 
-    Where there is hardly any time to spare, the controls of a programme do not show such an arc.
+    It is used for a guess without switches: if there is hardly any spare time, the controls of a programme do not show
+    such an arc.
     """
     middle, half = float(seen.times[int(np.argmax(seen.sigma[0]))]), CLOSE_SWITCHES / 2.0 * float(np.ptp(seen.times))
     middle = min(max(middle, seen.times[0] + 2.0 * half), seen.times[-1] - 2.0 * half)
@@ -180,10 +183,10 @@ def _paused(first: Guess, seen: Sample) -> Guess:
 
 
 def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
-    """What switching functions are below for as long as upper bounds would last that do the same, shape (r, 1).
+    """Return thresholds of switching functions that give arcs of the same total control as the programme, shape (r, 1).
 
-    It is zero where controls are at their bounds. Where other controls cost nearly the same, these are spread over a
-    time in which the signs of switching functions say little, but not where these functions are least.
+    The threshold is zero if controls are at their bounds. If other controls cost nearly the same, controls are spread
+    over a time in which the signs of switching functions mean little, but their smallest values still do.
     """
     widths = np.gradient(times)
     found = []
@@ -196,13 +199,13 @@ def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
 
 
 def _concentrated(first: Guess, times: Array, filled: Array) -> Array:
-    """Switching times of a guess whose arcs at upper bounds do what controls do round them, which may be spread."""
+    """Return switching times of arcs at upper bounds with the same total control as the spread controls nearby."""
     rows = zip(first.structure.levels, first.structure.by_control(first.times), filled, strict=True)
     return np.concatenate([_lasting(times, *row) for row in rows])
 
 
 def _lasting(times: Array, levels: tuple[int, ...], switches: Array, filled: Array) -> Array:
-    """Switching times of one control, whose level is so far between its bounds."""
+    """Return switching times of one control from its values as fractions of its range."""
     edges = np.concatenate([times[:1], switches, times[-1:]])
     found = switches.copy()
     for arc, level in enumerate(levels):
@@ -224,10 +227,10 @@ def _lasting(times: Array, levels: tuple[int, ...], switches: Array, filled: Arr
 
 
 def _from_the_start(instance: Instance, first: Guess) -> Guess | None:
-    """A guess without the wait at the lower bound with which it begins: all that follows comes as much earlier.
+    """Return a guess without its initial wait at the lower bound, with all later switches advanced by the wait.
 
-    Where such a wait next to changes nothing, as on an orbit that is next to circular, the equations hardly tell when
-    to begin, and the best time may be the earliest. ``None`` where it does not wait before it acts.
+    If such a wait changes almost nothing, as on a nearly circular orbit, the equations hardly determine when to begin,
+    and the best time may be the earliest. ``None`` if the guess does not begin with a wait.
     """
     row = first.structure.levels[0]
     if len(first.structure.levels) > 1 or len(row) < 3 or row[0] != LOWER or first.course is None:

@@ -1,4 +1,4 @@
-"""Limits of the end: how far a motion is beyond them, which it meets, and the extremal near it with these limits."""
+"""Limits of the final state: how far a motion exceeds them, which are active, and the extremal with these limits."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ from satsym.solvers.search.motion import Motion
 from satsym.status import BadInput
 
 BEYOND_LIMIT = 1e-9
-"""Largest distance beyond a limit, relative to what is limited, that is none."""
+"""Largest distance beyond a limit, relative to the limited quantity, that counts as satisfying it."""
 
 NEAR_LIMIT = 1e-6
-"""Distance before a limit, relative to what is limited, within which the interior-point code meets it."""
+"""Distance before a limit, relative to the limited quantity, within which it counts as active in a solution of the
+interior-point code."""
 
 
 def beyond(instance: Instance, times: Array, x: Array) -> dict[tuple[str, Side], float]:
-    """By how much the end is beyond its limits, relative to the size of what each limits; negative before them.
+    """Return by how much the end exceeds its limits, relative to the limited quantities; negative inside the limits.
 
-    A limit that the instance meets is not looked at: the boundary residual has it.
+    A limit that is active in the instance is left out, since the boundary residual contains it.
 
     Parameters
     ----------
     times, x
-        Of the motion: shapes (N,) and (n, N).
+        Times and states of the motion, shapes (N,) and (n, N).
     """
     names, found = instance.model.spec.state_names, {}
     largest = np.abs(x).max(axis=1)
@@ -50,7 +51,7 @@ def beyond(instance: Instance, times: Array, x: Array) -> dict[tuple[str, Side],
 
 
 def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
-    """At which of its limits the end of a motion is, by name."""
+    """Return the active limits at the end of a motion, by name."""
     return {name: side for (name, side), by in beyond(instance.meeting({}), at.times, at.x).items() if by > -NEAR_LIMIT}
 
 
@@ -60,12 +61,12 @@ def guessed_end(instance: Instance, at: Motion) -> Instance:
 
 
 def exact_within(instance: Instance, at: Motion, exact: Callable[[Instance], Solution | None]) -> Solution | None:
-    """The extremal whose limits of the end are those that a motion meets, if it is beyond no other one.
+    """Return the extremal with the limits that are active in a motion, unless it exceeds another limit (``None``).
 
     Parameters
     ----------
     exact
-        Finds the extremal near the motion of an instance whose limits are met or left.
+        Function that finds the extremal near the motion, for an instance with given active limits.
     """
     try:
         found = exact(guessed_end(instance, at).meeting(limits_met(instance, at)))
