@@ -1,1 +1,1 @@
-"""Extremals in arcs, each with a law of its own, joined where functions vanish: one boundary value problem."""
+"""Extremals in arcs with a control law on each arc and a condition at each junction: one boundary value problem."""

@@ -1,8 +1,9 @@
-"""The equations of an extremal in arcs: Gauss collocation on every arc, continuity and a condition where two meet.
+"""Equations of an extremal in arcs: Gauss collocation on each arc, continuity, and a condition at each junction.
 
-Unknown are values on all arcs, the times of junctions, the final time and multipliers of the end, and what the instance
-leaves free. See Ascher, Mattheij, Russell, Numerical Solution of Boundary Value Problems for Ordinary Differential
-Equations (1995), chapter 5, and Bryson, Ho, Applied Optimal Control (1975), section 3.7, for free parameters.
+The unknowns are values on all arcs, junction times, the final time, multipliers of terminal constraints, and free
+initial states and parameters. See Ascher, Mattheij, Russell, Numerical Solution of Boundary Value Problems for Ordinary
+Differential Equations (1995), chapter 5, and for free parameters Bryson, Ho, Applied Optimal Control (1975), section
+3.7.
 """
 
 from __future__ import annotations
@@ -26,22 +27,23 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
 
 STEP = 1e-30
-"""Imaginary step with which derivatives are taken."""
+"""Imaginary step of complex-step derivatives."""
 
 DIFFERENCE, FACTORS = 1e-3, {1: 3.0 / 4.0, 2: -3.0 / 20.0, 3: 1.0 / 60.0}
-"""Step of central differences of the sixth order by free parameters, as a share of their sizes, and their factors."""
+"""Relative step of sixth-order central differences with respect to free parameters, and the factors of the
+differences."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Where unknowns stand in a row of all of them."""
+    """Positions of the unknowns in the vector of all unknowns."""
 
     arcs: Array
-    """Edges of the arcs' values."""
+    """Positions at which the values of each arc begin and end."""
     junctions: int
-    """First of their times."""
+    """Position of the first junction time."""
     end: int
-    """The final time, if that is free."""
+    """Position of the final time, if it is free."""
     multipliers: int
     free: int
     count: int
@@ -49,14 +51,14 @@ class Layout:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """An extremal's laws and junctions, and on which intervals each arc is.
+    """Control laws and junctions of an extremal, and the mesh of each arc.
 
     Parameters
     ----------
     meshes
         Edges of the intervals of each arc, from 0 to 1.
     sizes
-        Of states and costates (2n,), of the duration, and of what is free.
+        Scales of states and costates (2n,), of the duration, and of the free parameters.
     """
 
     instance: Instance
@@ -67,27 +69,27 @@ class Problem:
 
     @property
     def n(self) -> int:
-        """How many states there are."""
+        """Return the number of states."""
         return len(self.instance.initial)
 
     @property
     def intervals(self) -> tuple[int, ...]:
-        """On how many intervals each arc is."""
+        """Return the number of intervals on each arc."""
         return tuple(len(mesh) - 1 for mesh in self.meshes)
 
     @property
     def open(self) -> bool:
-        """Whether the final time is free."""
+        """Return whether the final time is free."""
         return self.instance.tf is None
 
     @property
     def parameters(self) -> list[int]:
-        """Places of those that are free."""
+        """Return the indices of the free parameters."""
         return [one.index for one in self.instance.free if one.place is Place.PARAMETER]
 
     @property
     def layout(self) -> Layout:
-        """Where the unknowns stand."""
+        """Return the positions of the unknowns."""
         arcs = np.cumsum([0] + [(k * (STAGES + 1) + 1) * 2 * self.n for k in self.intervals])
         junctions = int(arcs[-1])
         end = junctions + len(self.junctions)
@@ -96,31 +98,31 @@ class Problem:
         return Layout(arcs, junctions, end, multipliers, free, free + len(self.parameters))
 
     def times(self, v: Array) -> Array:
-        """Where arcs begin and end."""
+        """Return the times at which arcs begin and end, the final time last."""
         at = self.layout
         end = v[at.end] if self.open else self.instance.tf
         return np.concatenate([[self.instance.t0], v[at.junctions : at.end], [end]])
 
     def given(self, v: Array) -> Parameters:
-        """All parameters, with those that are free as they are among the unknowns."""
+        """Return all parameters, with the free ones taken from the unknowns."""
         p = list[Any](self.instance.parameters)
         for k, place in enumerate(self.parameters):
             p[place] = v[self.layout.free + k]
         return tuple(p)
 
     def values(self, v: Array, arc: int) -> tuple[Array, Array]:
-        """Rows of an arc (1 + k (s + 1), 2n), and those of its stages as columns (2n, k s)."""
+        """Return the values of an arc (1 + k (s + 1), 2n), and those at its collocation points as columns (2n, k s)."""
         at, d = self.layout, 2 * self.n
         rows = v[at.arcs[arc] : at.arcs[arc + 1]].reshape(-1, d)
         inner = rows[:-1].reshape(self.intervals[arc], STAGES + 1, d)[:, 1:]
         return rows, inner.reshape(-1, d).T
 
     def places(self, arc: int) -> Array:
-        """Places of the stages within an arc, from 0 to 1, shape (k, s)."""
+        """Return the positions of the collocation points in an arc, from 0 to 1, shape (k, s)."""
         return points(self.meshes[arc], scheme(STAGES).nodes)
 
     def units(self) -> Array:
-        """Sizes of all unknowns."""
+        """Return the scales of all unknowns."""
         at, (both, duration, free) = self.layout, self.sizes
         found = np.ones(at.count)
         found[: at.junctions] = np.tile(both, at.junctions // len(both))
@@ -131,12 +133,12 @@ class Problem:
 
 
 def points(mesh: Array, nodes: Array) -> Array:
-    """Places (k, s) of s nodes of a scheme in each of k intervals with these edges."""
+    """Return the positions (k, s) of s nodes of a scheme in each of k intervals with these edges."""
     return np.asarray(mesh[:-1, None] + np.diff(mesh)[:, None] * nodes)
 
 
 class Assembly:
-    """Residuals and their derivatives, as they are put together block by block."""
+    """Collector of residuals and of the entries of their Jacobian, block by block."""
 
     def __init__(self, problem: Problem, v: Array, sloped: bool) -> None:
         self.problem, self.v, self.sloped, self.height = problem, v, sloped, 0
@@ -144,11 +146,11 @@ class Assembly:
         self.entries: list[tuple[Array, Array, Array]] = []
 
     def put(self, rows: NDArray[np.intp], columns: Any, values: Any) -> None:
-        """Add derivatives at rows and columns, which are broadcast against each other."""
+        """Add entries of the Jacobian at rows and columns, which are broadcast against each other."""
         self.entries.append(tuple(each.ravel() for each in np.broadcast_arrays(rows, columns, values)))  # type: ignore[arg-type]
 
     def few(self, function: Callable[[Array], Array], columns: Sequence[int]) -> None:
-        """Add rows that are a function of a few unknowns, differentiated by complex steps."""
+        """Add residuals that depend on a few unknowns, differentiated by complex steps."""
         here = self.v[list(columns)].astype(complex)
         value = np.real(function(here))
         if self.sloped:
@@ -158,7 +160,7 @@ class Assembly:
         self.height += len(value)
 
     def finished(self) -> tuple[Array, csc_matrix | None]:
-        """All rows, and the sparse matrix of their derivatives."""
+        """Return all residuals, and their Jacobian as a sparse matrix or ``None``."""
         from scipy.sparse import csc_matrix
 
         residual = np.concatenate(self.residuals)
@@ -169,7 +171,7 @@ class Assembly:
 
 
 def system(problem: Problem, v: Array, sloped: bool = True) -> tuple[Array, csc_matrix | None]:
-    """Residuals of all equations, and their derivatives if they are asked for."""
+    """Return the residuals of all equations, and their Jacobian if it is required, otherwise ``None``."""
     one = Assembly(problem, v, sloped)
     for arc in range(len(problem.laws)):
         _arc(one, arc)
@@ -203,7 +205,7 @@ def _placed(problem: Problem, free: Array) -> Parameters:
 
 
 def _end(problem: Problem, y: Array) -> Array:
-    """The derived conditions at the end."""
+    """Return the residuals of the derived conditions at the final time."""
     n, instance = problem.n, problem.instance
     nu = len(instance.model.spec.multipliers)
     z, multipliers, free = y[: 2 * n], tuple(y[2 * n : 2 * n + nu]), y[2 * n + nu :]
@@ -216,7 +218,7 @@ def _end(problem: Problem, y: Array) -> Array:
 
 
 def _arc(one: Assembly, arc: int) -> None:
-    """Collocation on an arc."""
+    """Add the collocation equations of an arc."""
     problem, v = one.problem, one.v
     at, d, k, law = problem.layout, 2 * problem.n, problem.intervals[arc], problem.laws[arc]
     gauss, times, p, first = scheme(STAGES), problem.times(v), problem.given(v), int(problem.layout.arcs[arc])
@@ -253,7 +255,7 @@ def _arc(one: Assembly, arc: int) -> None:
 
 
 def _slopes(problem: Problem, law: Law, t: Array, z: Array, p: Parameters) -> Array:
-    """Derivatives (2n, 2n + 1 + f, M) of rates by values, time, and what is free."""
+    """Return derivatives (2n, 2n + 1 + f, M) of rates by states and costates, time, and free parameters."""
     d, places = len(z), problem.parameters
     wide = d + 1 + len(places)
     many = np.repeat(np.concatenate([z, t[None]]).astype(complex)[:, None], wide, 1)
@@ -268,9 +270,9 @@ def _slopes(problem: Problem, law: Law, t: Array, z: Array, p: Parameters) -> Ar
 
 
 def _by_free(one: Assembly) -> None:
-    """Add rows that make the cost stationary in the free parameters.
+    """Add equations that make the cost stationary in the free parameters.
 
-    H_p is integrated along the extremal, and what the end contributes is added.
+    They sum the integral of H_p along the extremal and the contribution of the end.
     """
     problem, v = one.problem, one.v
     at, n, d, places = problem.layout, problem.n, 2 * problem.n, problem.parameters
@@ -284,7 +286,7 @@ def _by_free(one: Assembly) -> None:
         weights = (np.diff(problem.meshes[arc])[:, None] * gauss.weights).ravel()
 
         def along(y: Array, law: Law = law) -> Array:
-            """(f, M) derivatives of H at rows of values, time and free parameters."""
+            """Return derivatives (f, M) of H by free parameters, at columns of values, time and these parameters."""
             p = _placed(problem, y[d + 1 :])
             u = law.control(y[d], y[:d], p)
             return _differences(problem, p, lambda q: instance.model.hamiltonian_batch(y[d], y[:n], u, y[n:d], q))
@@ -336,7 +338,7 @@ def _by_free(one: Assembly) -> None:
 
 
 def _differences(problem: Problem, p: Parameters, function: Callable[[Parameters], Any]) -> Array:
-    """Derivatives (f, M) of a function by what is free, by real differences, whatever else is complex."""
+    """Return derivatives (f, M) of a function by free parameters, by real differences of complex values."""
     rows = []
     for place, size in zip(problem.parameters, problem.sizes[2], strict=True):
         total: Any = 0.0
@@ -350,7 +352,7 @@ def _differences(problem: Problem, p: Parameters, function: Callable[[Parameters
 
 
 def cost(problem: Problem, v: Array) -> float:
-    """What an extremal costs."""
+    """Return the cost of an extremal."""
     times, p, total, instance, n = problem.times(v), problem.given(v), 0.0, problem.instance, problem.n
     weights = scheme(STAGES).weights
     for arc, law in enumerate(problem.laws):
@@ -366,14 +368,14 @@ def cost(problem: Problem, v: Array) -> float:
 
 
 def begun(problem: Problem, times: Array, z: Array, edges: Array, multipliers: Array, free: Array) -> Array:
-    """The unknowns from a motion.
+    """Return the vector of unknowns that represents a given motion.
 
     Parameters
     ----------
     times, z
-        Of the motion, states above costates (2n, N).
+        Times of the motion, and its states above costates (2n, N).
     edges
-        Where arcs begin and end.
+        Times at which arcs begin and end.
     """
     own, parts = np.concatenate([[0.0], scheme(STAGES).nodes]), []
     for (a, b), mesh in zip(pairwise(edges.tolist()), problem.meshes, strict=True):
@@ -383,7 +385,7 @@ def begun(problem: Problem, times: Array, z: Array, edges: Array, multipliers: A
 
 
 def between(problem: Problem, v: Array, arc: int, shares: Array) -> Array:
-    """Values (2n, M) at shares of an arc's length."""
+    """Return states and costates (2n, M) at given fractions of an arc's length."""
     mesh = problem.meshes[arc]
     rows, _ = problem.values(v, arc)
     known = rows[:-1].reshape(len(mesh) - 1, STAGES + 1, 2 * problem.n)

@@ -1,4 +1,4 @@
-"""Which control an arc has, and what determines where the next one begins."""
+"""Control laws of arcs, and the conditions that determine the junctions between arcs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from satsym.instance import Instance
 Parameters: TypeAlias = "tuple[Any, ...]"
 
 Vanishing: TypeAlias = "Callable[[Array, Array, Parameters], Array]"
-"""(t, z, p) -> values (M,), real or complex."""
+"""Function (t, z, p) -> values (M,) that vanish at a junction, for times, states above costates, and parameters."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Law:
     Attributes
     ----------
     rates
-        (t, z, p) -> rates (2n, M) of states and costates z (2n, M); real or complex.
+        Function (t, z, p) -> rates (2n, M) of states and costates z (2n, M); real or complex.
     control
-        (t, z, p) -> controls (m, M).
+        Function (t, z, p) -> controls (m, M).
     bounds
-        The argument ``bounds`` of generated functions with which this law is the one that minimises H.
+        The argument ``bounds`` of generated functions for which this law minimises H.
     name
-        For messages.
+        Name of the law in messages.
     """
 
     rates: Callable[[Array, Array, Parameters], Array]
@@ -41,14 +41,14 @@ class Law:
 
 @dataclass(frozen=True)
 class Junction:
-    """Where one arc ends and the next begins: a function of time, states and costates vanishes there.
+    """The junction of two arcs, where a function of time, states and costates vanishes.
 
     Attributes
     ----------
     vanishing
-        What is zero there.
+        The function that vanishes at the junction.
     controls
-        Places of the controls that switch, or that meet or leave a bound.
+        Indices of the controls that switch, or that reach or leave a bound.
     """
 
     vanishing: Vanishing
@@ -56,7 +56,7 @@ class Junction:
 
 
 def derived(instance: Instance, bounds: tuple[float, ...], name: str = "") -> Law:
-    """The law that the derivation has for a control set with these bounds."""
+    """Return the derived control law for a control set with the given bounds."""
     model, n = instance.model, len(instance.initial)
 
     def rates(t: Array, z: Array, p: Parameters) -> Array:

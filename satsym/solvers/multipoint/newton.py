@@ -1,4 +1,4 @@
-"""Newton's method on the equations of an extremal in arcs, damped, and on meshes that are made finer until they tell.
+"""Damped Newton's method for the equations of an extremal in arcs, on successively finer meshes.
 
 The length of steps is measured in the metric of the present derivatives, see Deuflhard, Newton Methods for Nonlinear
 Problems (2011), section 3.3.
@@ -17,16 +17,16 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.multipoint.equations import Problem, between, cost, points, system
 
 SOLVED = 1e-11
-"""Size of the last step, relative to the sizes of what is unknown."""
+"""Largest component of the last step, relative to the scales of the unknowns, at which the iteration has converged."""
 
 SHORTEST, MOST_STEPS = 1e-3, 40
-"""Shortest damped step, as a share of the whole one, and the largest number of steps."""
+"""Smallest damping factor of a step, and maximum number of steps."""
 
 SETTLED_SOLUTION = 1e-11
-"""Change of cost, times and initial costates from one mesh to the next that is none, relative to their sizes."""
+"""Relative change of cost, times, and initial and final values between two meshes at which refinement ends."""
 
 FINEST = 2000
-"""Intervals of all arcs."""
+"""Maximum number of intervals of all arcs together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,22 +36,22 @@ class Extremal:
     problem: Problem
     unknown: Array
     step: float
-    """Size of the last step of Newton's method, or the change from the last mesh, whichever is larger."""
+    """Magnitude of the last Newton step or change from the previous mesh, whichever is larger, relative."""
     iterations: int
 
     @property
     def cost(self) -> float:
-        """What it costs."""
+        """Return the cost of the extremal."""
         return cost(self.problem, self.unknown)
 
     @property
     def times(self) -> Array:
-        """Where arcs begin and end."""
+        """Return the times at which arcs begin and end."""
         return self.problem.times(self.unknown)
 
 
 def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
-    """Solve the equations on one mesh; ``None`` where that leads nowhere."""
+    """Solve the equations on one mesh; ``None`` if the iteration fails."""
     from scipy.sparse.linalg import splu
 
     units = problem.units()
@@ -84,7 +84,7 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
 
 
 def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
-    """Solve the equations on meshes of which each is twice as fine, until the answer does not change."""
+    """Solve the equations on meshes with successively halved intervals until the solution converges; else ``None``."""
     found = newton(problem, v, limits)
     while found is not None and sum(found.problem.intervals) < FINEST:
         finer = newton(*_refined(found), limits)
@@ -98,7 +98,7 @@ def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
 
 
 def _refined(found: Extremal) -> tuple[Problem, Array]:
-    """The unknowns on intervals of half the length."""
+    """Return the problem and its unknowns interpolated on intervals of half the length."""
     old, v = found.problem, found.unknown
     problem = replace(old, meshes=tuple(np.sort(np.append(one, 0.5 * (one[:-1] + one[1:]))) for one in old.meshes))
     own, parts = np.concatenate([[0.0], scheme(STAGES).nodes]), []
@@ -111,7 +111,7 @@ def _refined(found: Extremal) -> tuple[Problem, Array]:
 
 
 def _change(found: Extremal, finer: Extremal) -> float:
-    """The change from one mesh to the next: of initial and final values, of times, of what is free, and of the cost."""
+    """Return the largest relative change between two meshes, of initial and final values, times, and cost."""
     both, duration, _ = found.problem.sizes
     pairs = [(one.problem.layout, one.unknown) for one in (found, finer)]
     d = len(both)
