@@ -1,1 +1,1 @@
-"""What an instance leaves free besides its end."""
+"""Free quantities of an instance besides its end: initial states, the initial time and parameters."""

@@ -1,9 +1,9 @@
-"""Free initial states, a free initial time and free parameters: where the minimum cost with them given is least.
+"""Free initial states, a free initial time and free parameters: minimisation of the minimum cost over their values.
 
-The problem with these given is solved by the instance's method, whatever that is. Its minimum cost has a slope that the
-solution itself tells (:mod:`satsym.solvers.certificate.start`); a trust region leads down along it. Symmetric rank-one
-updates know of negative curvature; differences of slopes tell at the end how the minimum cost is curved: upwards at a
-minimum, downwards at a saddle, which is left to both sides.
+For given values the problem is solved by the instance's own method. The derivative of its minimum cost follows from the
+solution (:mod:`satsym.solvers.certificate.start`); a trust-region method descends along it. Symmetric rank-one updates
+can represent negative curvature; differences of derivatives at the end show whether the point is a minimum or a saddle
+point, which is left in both directions.
 """
 
 from __future__ import annotations
@@ -29,61 +29,63 @@ from satsym.status import BadInput, Status
 from satsym.wording import counted
 
 ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
-"""Units by which unknowns are changed, one after the other, where the first guess has no answer."""
+"""Changes of each unknown, in units, that are tried in turn if the initial guess has no solution."""
 
 EQUAL_COST = 1e-9
-"""Relative margin by which another choice may seem cheaper: its own error."""
+"""Relative difference of costs that is within their error: a choice that is cheaper by less is no better."""
 
 SLACK = 0.7
-"""Share of the room between its bounds that a control is given: what is just reached has no answer nearby."""
+"""Factor by which the ranges of controls are reduced in the search for a first choice. A choice that needs the full
+range may have no solutions nearby."""
 
 WORK = 400_000
-"""Unknowns times iterations that the searches may take."""
+"""Maximum work of these searches, in unknowns times iterations."""
 
 SETTLED_SLOPE = 1e-11
-"""Slope, relative, at which nothing is left to be gained."""
+"""Relative derivative of the minimum cost at which the iteration has converged."""
 
 ITERATIONS, POLISHING, DEPARTURES = 60, 4, 3
-"""Steps of the trust region, of Newton's method at its end, and saddles that are left."""
+"""Maximum numbers of steps of the trust-region method, of final Newton steps, and of saddle points that are left."""
 
 FIRST = 0.05
-"""Share of the unit of each unknown by which it is changed first, to see how much depends on it."""
+"""First change of each unknown, in units, which shows how strongly the cost depends on it."""
 
 NEAR_UNITS = 1e-3
-"""Units by which unknowns are changed to measure the curvature."""
+"""Changes of the unknowns, in units, from which the curvature is measured."""
 
 FAR_UNITS = 1e5
-"""Units beyond which a cost that falls still is taken to fall without end."""
+"""Change of an unknown, in units, beyond which a cost that still falls counts as unbounded below."""
 
 SMALLEST_RADIUS = 1e-10
-"""Radius of the trust region, in units, below which nothing moves."""
+"""Radius of the trust region, in units, below which the iteration ends."""
 
 IDLE = 1e-9
-"""Relative slope and change of the cost below which it does not depend on an unknown."""
+"""Relative derivative and change of the cost below which the cost does not depend on an unknown."""
 
 NOISE = 1e-10
-"""Relative difference of costs that two solutions may have for nothing."""
+"""Relative difference of costs that two solutions may have by numerical error."""
 
 AGREEMENT = 0.05
-"""Relative difference of the curvatures that costs and slopes tell, beyond which neither is believed."""
+"""Relative difference between curvatures from costs and from derivatives above which the curvature counts as
+unknown."""
 
 
 def solve(instance: Instance, progress: Progress | None, solver: Solver, certified: Solver) -> Solution:
-    """Solve an instance that leaves initial states, the initial time or parameters free.
+    """Solve an instance with free initial states, a free initial time or free parameters.
 
     Parameters
     ----------
     instance
-        With numbers to begin with in their place.
+        Instance with initial guesses of these quantities.
     solver
-        Of the problem with everything given.
+        Solver of the problem with all of them given.
     certified
-        The same with a certificate; what it improves on is taken up.
+        The same solver with certificates; a cheaper competitor that it finds is used.
 
     Raises
     ------
     BadInput
-        If neither the cost nor an end depends on one of them.
+        If neither the cost nor the end conditions depend on one of these quantities.
     """
     began = time.perf_counter()
     units = np.array([unit_of(unknown, instance) for unknown in instance.free])
@@ -99,7 +101,7 @@ def solve(instance: Instance, progress: Progress | None, solver: Solver, certifi
 
 
 def _solved(trials: Trials, certified: Solver) -> Solution:
-    """The search, and the answer with its certificate; once more where the latter knows a cheaper one."""
+    """Return the answer with its certificate; repeat the search once if the certificate's answer is cheaper."""
     instance, here = trials.instance, _begin(trials)
     if isinstance(here, Solution):
         return here
@@ -135,7 +137,7 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
 
 
 def _begin(trials: Trials) -> Trial | Solution:
-    """The first trial that has an answer, with units that fit it."""
+    """Return the first trial that has a solution, or a solution without an answer if none has."""
     count = len(trials.unknowns)
     here = trials(np.zeros(count))
     if here is None and (arriving := tried(lambda: _reaching(trials))) is not None:
@@ -151,14 +153,14 @@ def _begin(trials: Trials) -> Trial | Solution:
 
 
 def _unanswered(trials: Trials, status: Status, message: str) -> Solution:
-    """No answer, and why."""
+    """Return a solution without an answer, with the reason in its message."""
     last = trials.last or unsolved(trials.instance, trials.instance.solver.method, 0.0)
     reason = "" if last.status.answered or last.status is status else f": {last.message}"
     return replace(last, status=status, message=message + reason, objective=float("nan"), certificate=None)
 
 
 def _reaching(trials: Trials) -> Array | None:
-    """A choice with which the end can be reached, in units; ``None`` where none was found, or no end is given."""
+    """Return a choice, in units, for which the end can be reached; ``None`` if none is found or no end is given."""
     instance = trials.instance
     if not instance.final or any(isinstance(value, str) for value in instance.final.values()):
         return None
@@ -169,7 +171,7 @@ def _reaching(trials: Trials) -> Array | None:
 
 
 def _with_slack(instance: Instance) -> Instance:
-    """An instance with less room for its controls."""
+    """Return an instance with reduced ranges of its controls."""
 
     def nearer(bounds: tuple[float, ...]) -> tuple[float, ...]:
         rest = (min(max(0.0, a), b) for a, b in zip(instance.lower, instance.upper, strict=True))
@@ -186,7 +188,10 @@ def _with_slack(instance: Instance) -> Instance:
 
 
 def _minimum_from(trials: Trials, here: Trial) -> tuple[Trial, Curvature] | Solution:
-    """Descend from a trial to where the minimum cost is least; its curvature there; or a solution without answer."""
+    """Descend from a trial to a minimum of the minimum cost.
+
+    Returns the trial there with the curvature of the minimum cost, or a solution without an answer.
+    """
     form = _first_form(trials, here)
     for _ in range(DEPARTURES):
         descended = _descended(trials, here, form)
@@ -209,7 +214,7 @@ def _minimum_from(trials: Trials, here: Trial) -> tuple[Trial, Curvature] | Solu
 
 
 def _descended(trials: Trials, here: Trial, form: Array) -> Trial | Solution:
-    """The trust region's way down."""
+    """Descend by the trust-region method, and return the last trial or a solution without an answer."""
     radius, start = 1.0, here.at
     for _ in range(ITERATIONS):
         if here.residual <= SETTLED_SLOPE or radius < SMALLEST_RADIUS:
@@ -238,7 +243,7 @@ def _descended(trials: Trials, here: Trial, form: Array) -> Trial | Solution:
 
 
 def _first_form(trials: Trials, here: Trial) -> Array:
-    """Second derivatives by first differences, and what depends on nothing refused."""
+    """Return second derivatives by first differences; raise an error if the cost does not depend on an unknown."""
     count = len(here.at)
     form, idle = np.diag(np.maximum(np.abs(here.slope), NOISE * here.size)), []
     for k, axis in enumerate(np.eye(count)):
@@ -257,10 +262,10 @@ def _first_form(trials: Trials, here: Trial) -> Array:
 
 
 def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
-    """Second derivatives, and whether they are believed.
+    """Return second derivatives of the minimum cost, and whether they are reliable.
 
-    Neighbouring extremals tell those by initial states. Others are central differences of slopes, which are believed if
-    costs tell the same.
+    With respect to initial states they follow from neighbouring extremals. Others are central differences of first
+    derivatives, which count as reliable if differences of costs agree with them.
     """
     exact = second_derivative(replace(here.solution, instance=replace(here.solution.instance, free=trials.unknowns)))
     if exact is not None:
@@ -280,7 +285,7 @@ def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
 
 
 def _polished(trials: Trials, here: Trial, form: Array) -> Trial:
-    """Newton's method with the form that was measured."""
+    """Improve a trial by Newton's method with the measured second derivatives."""
     for _ in range(POLISHING):
         if here.residual <= SETTLED_SLOPE or softest(form, STILL * here.size)[0] <= FLAT:
             break
@@ -292,7 +297,7 @@ def _polished(trials: Trials, here: Trial, form: Array) -> Trial:
 
 
 def _step(form: Array, slopes: Array, radius: float) -> Array:
-    """The least of the quadratic model within the trust region."""
+    """Return the minimiser of the quadratic model within the trust region."""
     values, axes = np.linalg.eigh(form)
     along = axes.T @ slopes
     if values[0] > 0.0:
@@ -314,7 +319,7 @@ def _step(form: Array, slopes: Array, radius: float) -> Array:
 
 
 def _updated(form: Array, step: Array, change: Array) -> Array:
-    """The symmetric rank-one update, which knows of negative curvature."""
+    """Return the second derivatives after a symmetric rank-one update, which may be indefinite."""
     missing = change - form @ step
     weight = float(missing @ step)
     if abs(weight) <= 1e-8 * float(np.linalg.norm(missing) * np.linalg.norm(step)):
@@ -323,7 +328,7 @@ def _updated(form: Array, step: Array, change: Array) -> Array:
 
 
 def _met_beside(trials: Trials, here: Trial) -> str | None:
-    """What is met where the slope of the minimum cost does not vanish and no step down is found; ``None``: nothing."""
+    """Return why the slope does not vanish although no step decreases the cost; ``None`` if unknown."""
     length = max(float(np.linalg.norm(here.slope)), 1e-300)
     beside = [trials(here.at + sign * NEAR_UNITS * here.slope / length) for sign in (1.0, -1.0)]
     if beside[1] is None:

@@ -1,4 +1,4 @@
-"""The problem with a choice of what is free given, solved for one choice after the other."""
+"""Solutions of a problem for given values of its free initial states, initial time and parameters."""
 
 from __future__ import annotations
 
@@ -18,39 +18,39 @@ from satsym.status import Status
 from satsym.wording import counted
 
 Solver = Callable[[Instance, Progress | None], Solution]
-"""A solver of an instance with everything given."""
+"""Function that solves an instance in which all these quantities are given."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """The solution with what is free given."""
+    """Solution for one choice of the free quantities."""
 
     at: Array
-    """In units, from the first guess."""
+    """Change of the free quantities from their initial guess, in units."""
     solution: Solution
     slope: Array
-    """Slope of the minimum cost, by each unit."""
+    """Derivatives of the minimum cost with respect to the free quantities, per unit."""
     residual: float
-    """The largest of them, relative."""
+    """Largest relative derivative."""
 
     @property
     def cost(self) -> float:
-        """The minimum cost."""
+        """Return the minimum cost."""
         return self.solution.objective
 
     @property
     def size(self) -> float:
-        """The size of the cost, and of what it changes by."""
+        """Return the scale of the cost, from its magnitude and its derivatives."""
         return max(abs(self.cost), float(np.abs(self.slope).max(initial=0.0)), 1e-300)
 
 
 class Late(Exception):
-    """Time was up in the midst of a trial."""
+    """Raised if the time limit is reached during a trial."""
 
 
 @dataclass(eq=False)
 class Trials:
-    """Solves for one choice after the other, and remembers what came of it."""
+    """Solver for successive choices of the free quantities, which keeps the results."""
 
     instance: Instance
     solver: Solver
@@ -64,11 +64,11 @@ class Trials:
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """What is free."""
+        """Return the free quantities."""
         return self.instance.free
 
     def chosen(self, at: Array) -> Instance | None:
-        """The instance with everything given; ``None`` outside the domain."""
+        """Return the instance with the chosen values; ``None`` if they are not admissible."""
         found = self.instance
         for unknown, unit, step in zip(self.unknowns, self.unit, at, strict=True):
             value = unknown.of(self.instance) + float(unit * step)
@@ -81,7 +81,7 @@ class Trials:
         return replace(begun, free=())
 
     def __call__(self, at: Array) -> Trial | None:
-        """The trial at a choice; ``None`` where that has no answer."""
+        """Return the trial at a choice; ``None`` if the problem has no solution there."""
         chosen = self.chosen(at)
         if chosen is None:
             return None
@@ -101,18 +101,18 @@ class Trials:
         return Trial(at, found, values, max(one.relative for one in slopes))
 
     def values(self, at: Array) -> str:
-        """A choice, in words."""
+        """Return the chosen values as text."""
         chosen = zip(self.unknowns, self.unit, at, strict=True)
         return ", ".join(f"{u.name} = {u.of(self.instance) + float(unit * step):.10g}" for u, unit, step in chosen)
 
     @property
     def count(self) -> str:
-        """How many there were, in words."""
+        """Return the number of solved problems as text."""
         return counted(self.tried, "solution")
 
 
 def unit_of(unknown: Unknown, instance: Instance) -> float:
-    """By what an unknown may reasonably change: its size, that of its end, or the duration."""
+    """Return the scale of an unknown: its magnitude, that of its given final value, or the duration."""
     if unknown.place is Place.TIME:
         end = instance.tf if instance.tf is not None else instance.tf_guess
         return 1.0 if end is None else end - instance.t0
