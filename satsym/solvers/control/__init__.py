@@ -1,1 +1,1 @@
-"""The set of admissible controls, where a control meets its bounds, and laws that are regularised."""
+"""Admissible controls: when a control reaches or leaves bounds, jumps of control laws, and regularised laws."""

@@ -1,4 +1,4 @@
-"""When a schedule in the equations jumps or has a corner: nodes of meshes belong there."""
+"""Times at which a schedule in the equations jumps or has a corner, where meshes need nodes."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 PLACES, HALVINGS = 256, 48
-"""Stretches of the time in each of which one break is looked for, and how often each is halved."""
+"""Number of intervals in each of which one break is searched for, and number of bisections of each interval."""
 
 JUMP = 1e-7
-"""Change of a rate or of its slope within the last digits of time, relative to its range, that is a jump."""
+"""Change of a rate or of its time derivative within rounding of the time, relative to its range, that counts as a
+jump."""
 
 BESIDE = 1e-12
-"""Share of the time by which a break is off either end."""
+"""Minimum distance of a break from both ends, relative to the duration."""
 
 
 def find_breaks(instance: Instance) -> Array:
-    """Find the shares of a given duration between which rates jump or have a corner that time alone decides.
+    """Find the fractions of a given duration between which rates jump or have a corner that depends on time alone.
 
-    Rates and their slopes by explicit time are looked at where states stay as they are at the start. Of each stretch
-    the half is kept in which these change more: what is smooth changes less and less, a jump does not.
+    Rates and their derivatives with respect to explicit time are evaluated at the initial state. Of each interval the
+    half with the larger change is kept: the change of a smooth function tends to zero, that of a jump does not.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Where a control meets or leaves a bound: the zeros of its distance from the bound, were there none."""
+"""Times at which a control reaches or leaves a bound: the zeros of the distance of the unbounded control from it."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ MOST_STEPS = 100
 LAST_DIGITS = 1e-15
 
 STENCIL = 5
-"""Points of the polynomial through which a zero is found."""
+"""Number of points of the polynomial that interpolates a function near a zero."""
 
 TURNS, TOWARDS = 8, 0.5
-"""Parabolas that are laid through three points at most, and the share of the least value below which one has to lead
-for the function to have zeros nearby."""
+"""Maximum number of parabolas through three points, and the value of a parabola's minimum, relative to the smallest
+known value, below which the function may have zeros nearby."""
 
 BEYOND_ZERO = 1e-11
-"""Share of the largest value by which a function is beyond zero; less than that is rounding."""
+"""Magnitude of a function beyond zero, relative to its largest magnitude, below which it counts as rounding."""
 
 
 def zeros(times: Array, values: Array) -> list[float]:
-    """Times at which a function changes sign, by local interpolation.
+    """Return the times at which a function changes its sign, by local interpolation.
 
     Parameters
     ----------
     times
-        Shape (M,), increasing.
+        Increasing times, shape (M,).
     values
-        Shape (M,). Exact zeros count where the signs on both sides differ.
+        Values of the function, shape (M,). Exact zeros count if the signs on both sides differ.
 
     Returns
     -------
@@ -45,14 +45,14 @@ def zeros(times: Array, values: Array) -> list[float]:
 
 
 def beyond(function: Callable[[float], float], times: Array, values: Array) -> list[float]:
-    """Times between others at which a function is beyond zero for a moment, having the same sign at these others.
+    """Return times at which a function briefly has the opposite sign between points where its sign is the same.
 
-    Where it comes near to zero and turns, its extremum is looked for by parabolas.
+    If the function approaches zero and turns, its extremum is searched for by parabolas.
 
     Parameters
     ----------
     times, values
-        Shape (M,), the former increasing.
+        Increasing times and the values of the function, shape (M,).
     """
     sign, size = np.sign(values), np.abs(values)
     known = size[np.isfinite(size)]
@@ -74,7 +74,7 @@ def beyond(function: Callable[[float], float], times: Array, values: Array) -> l
 
 
 def _vertex(points: list[tuple[float, float]]) -> float | None:
-    """Where the parabola through three points has its least value; ``None`` where that is far from zero, or known."""
+    """Return the minimum point of the parabola through three points; ``None`` if it is far from zero or known."""
     (a, at_a), (b, at_b), (c, at_c) = points
     left, right = (at_a - at_b) / (b - a), (at_c - at_b) / (c - b)
     curved = left + right
@@ -87,7 +87,7 @@ def _vertex(points: list[tuple[float, float]]) -> float | None:
 
 
 def _around(points: list[tuple[float, float]], new: tuple[float, float]) -> list[tuple[float, float]]:
-    """Three points around the least, of three and one more."""
+    """Return three neighbouring points about the smallest one, out of three and a new one."""
     ordered = sorted([*points, new])
     least = min((1, 2), key=lambda k: ordered[k][1])
     return ordered[least - 1 : least + 2]
@@ -101,19 +101,19 @@ def enclosed(
     at_high: Array,
     within: float = LAST_DIGITS,
 ) -> Array:
-    """The zeros of continuous functions between points where the signs of each differ, shape (K,).
+    """Return the zeros of continuous functions in intervals with a change of sign, shape (K,).
 
-    Secant steps that keep each zero enclosed (the method of Anderson and Bjorck), all at once. The library function for
-    this would cost an import several times longer than solving.
+    The method uses secant steps that keep each zero enclosed (Anderson and Bjorck), for all functions at once.
+    Importing the library function for this purpose would take several times longer than solving.
 
     Parameters
     ----------
     function
-        The value of each at a time of its own, from shape (K,) to (K,).
+        Function that returns the value of each function at its own time, from shape (K,) to (K,).
     at_low, at_high
-        Their values at the points.
+        Values of the functions at both ends of the intervals.
     within
-        Last step, by default in the last digits.
+        Length of the last step, relative to the time, or absolute below 1; by default rounding.
     """
     left = np.ones(len(low), dtype=bool)
     for _ in range(MOST_STEPS):
@@ -134,7 +134,7 @@ def enclosed(
 
 
 def _zero(times: Array, values: Array, low: float, high: float) -> float:
-    """The zero in [low, high] of the polynomial through the points; the signs at its ends differ."""
+    """Return the zero in [low, high] of the polynomial through given points; the signs at both ends differ."""
     width = high - low
     nodes = (times - low) / width
     coefficients = np.polynomial.polynomial.polyfit(nodes, values, len(nodes) - 1)

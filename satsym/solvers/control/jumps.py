@@ -1,10 +1,10 @@
-"""Jumps of a control law from one minimiser of H to another: where they are, and how neighbouring extremals pass them.
+"""Jumps of a control law from one minimiser of H to another: their times, and their effect on neighbouring extremals.
 
-States and costates go on while the control jumps, where the excess of H under one minimiser over the other vanishes.
-Beside an extremal that jumps, a neighbour with the excess sigma at that time jumps at a time that is later by
-``-sigma / sigma'``, and goes until then at the rates F before instead of those after the jump. At the node of a jump
-two intervals therefore meet but for ``(F+ - F-) sigma / sigma'``, which vanishes once the node is where the jump is;
-and Newton's method, which knows how that follows states and costates, sees the jump move.
+States and costates are continuous at a jump, where the excess of H under one minimiser over the other vanishes. A
+neighbouring extremal with the excess sigma at that time jumps later by ``-sigma / sigma'``, and until then has the
+rates F- before the jump instead of the rates F+ after it. At the node of a jump two intervals therefore meet with a gap
+``(F+ - F-) sigma / sigma'``, which vanishes once the node is at the jump. Newton's method uses the derivatives of this
+gap with respect to states and costates, and thus moves the jump.
 """
 
 from __future__ import annotations
@@ -18,72 +18,72 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 HALVINGS = 48
-"""Halvings of the time between two points, towards where the control moves most."""
+"""Number of bisections of the time between two points, towards the larger change of the control."""
 
 MOVED = 1e-6
-"""Share of the largest control by which one moves that may have jumped."""
+"""Change of a control between two points, relative to the largest control, above which it may jump between them."""
 
 WHOLE, FAINT_JUMP = 8, 0.1
-"""Halvings until which that holds, and afterwards the share of a jump that must be left, for the rest is none."""
+"""Number of bisections during which this limit holds, and the fraction of a jump that has to remain afterwards."""
 
 POLISHED = 8
-"""Steps of Newton's method from a minimiser of H nearby."""
+"""Maximum number of Newton steps to a minimiser of H nearby."""
 
 INSTANT = 1e-6
-"""Over which a derivative by explicit time is taken, relative to it."""
+"""Relative step of the finite difference with respect to explicit time."""
 
 
 @dataclass(frozen=True, eq=False)
 class Jump:
-    """A jump along a motion."""
+    """A jump of the control along a motion."""
 
     time: float
-    """In the unit of what it was looked for in."""
+    """Time of the jump, in the unit of the given times."""
     before: Array
     after: Array
-    """The control on both sides, shape (m,)."""
+    """Controls before and after the jump, shape (m,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Saltation:
-    """How neighbouring extremals pass a jump, scaled as the states and costates are."""
+    """Effect of a jump on neighbouring extremals, in scaled states and costates."""
 
     leap: Array
-    """Change of the rates, shape (2n,)."""
+    """Change of the rates at the jump, shape (2n,)."""
     excess: float
-    """Excess of H after the jump over H before."""
+    """Excess of H under the control after the jump over H under the control before it."""
     slopes: Array
-    """Slopes of the excess by states and costates, shape (2n,)."""
+    """Derivatives of the excess with respect to states and costates, shape (2n,)."""
     drift: float
-    """Its rate by explicit time."""
+    """Partial derivative of the excess with respect to explicit time."""
     speed: float
-    """Its rate along the extremal."""
+    """Time derivative of the excess along the extremal."""
 
     @property
     def matrix(self) -> Array:
-        """What neighbours differ by after the jump, by what they differed by before it, shape (2n, 2n)."""
+        """Return the saltation matrix: deviations after the jump by deviations before it, shape (2n, 2n)."""
         return np.asarray(np.eye(len(self.leap)) + np.outer(self.leap, self.slopes) / self.speed)
 
     @property
     def gap(self) -> Array:
-        """The gap between both sides at a node that is not yet where the jump is, shape (2n,)."""
+        """Return the gap at a node that is not yet at the jump, shape (2n,)."""
         return np.asarray(self.leap * (self.excess / self.speed))
 
 
 def jumps(law: Callable[[Array], Array], times: Array, left: float) -> list[Jump]:
-    """Where a law jumps, in order.
+    """Return the jumps of a control law, in order of time.
 
-    Where it moves from one of the times to the next, that is narrowed down to where it moves most: of the move of a
-    continuous law there is nothing left then.
+    If the control changes between two times, the interval is bisected towards the larger change; for a continuous law
+    the change tends to zero.
 
     Parameters
     ----------
     law
-        From times (M,) to controls (m, M).
+        Function from times (M,) to controls (m, M).
     times
-        Between which jumps are looked for, shape (N,).
+        Times between which jumps are searched for, shape (N,).
     left
-        Share of the largest control by which it still moves where it jumps.
+        Minimum size of a jump, relative to the largest control.
     """
     values = law(times)
     low, high, first, last = times[:-1], times[1:], values[:, :-1], values[:, 1:]
@@ -104,16 +104,16 @@ def jumps(law: Callable[[Array], Array], times: Array, left: float) -> list[Jump
 
 
 def saltation(instance: Instance, t: float, z: Array, jump: Jump, unit: Array, cost: float) -> Saltation:
-    """The saltation of a jump.
+    """Return the saltation at a jump.
 
     Parameters
     ----------
     t, z
-        The time, and states and costates there, shape (2n,).
+        Time of the jump, and states and costates there, shape (2n,).
     jump
-        With the control before and after, nearly.
+        Jump with approximate controls before and after.
     unit, cost
-        Of states and costates, shape (2n,), and of the cost.
+        Units of states and costates, shape (2n,), and of the cost.
     """
     model, p, n = instance.model, instance.parameters, len(z) // 2
     x, lam = tuple(z[:n].tolist()), tuple(z[n:].tolist())
@@ -132,7 +132,7 @@ def saltation(instance: Instance, t: float, z: Array, jump: Jump, unit: Array, c
 
 
 def beside(instance: Instance, t: float, z: Array, u: Array) -> Array:
-    """The minimiser of H near a control, shape (m,), at a time, states and costates (2n,)."""
+    """Return the minimiser of H near a control, shape (m,), at a time, states and costates (2n,)."""
     model, p, n, m = instance.model, instance.parameters, len(z) // 2, len(u)
     x, lam, control_set = tuple(z[:n].tolist()), tuple(z[n:].tolist()), instance.control_set
     for _ in range(POLISHED):

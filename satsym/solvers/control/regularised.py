@@ -1,8 +1,8 @@
-"""The regularised problem of a switching problem: the same with a small quadratic cost of the control.
+"""The regularised problem of a switching problem, with a small quadratic cost of the control added.
 
-Its control law is continuous, so collocation solves it; as the smoothing goes to zero its solutions tend to those of
-the problem itself. The weight of |u| is brought in from zero, for with it the law is flat where the costates vanish,
-which is where every cold start begins (Bertrand and Epenoy, New smoothing techniques for solving bang-bang optimal
+Its control law is continuous, so that collocation solves it; as the smoothing parameter tends to zero, its solutions
+tend to those of the original problem. The weight of |u| is increased from zero, since with it the law is constant where
+the costates vanish, as at every cold start (Bertrand and Epenoy, New smoothing techniques for solving bang-bang optimal
 control problems, Optimal Control Applications and Methods 23, 2002).
 """
 
@@ -18,7 +18,7 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 TINY_COSTATE = 1e-60
-"""A costate that does nothing, and yet has a sign."""
+"""Costate that is negligible but has a sign."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Regularised(Instance):
     """An instance with ``smoothing``/2 times the squared control added to its running cost."""
 
     smoothing: float = 1.0
-    """In the unit of the running cost over that of the squared control."""
+    """Smoothing parameter, in the unit of the running cost divided by that of the squared control."""
     fraction: float = 1.0
-    """Share of the weight of |u| that counts, 0 to 1."""
+    """Fraction of the weight of |u| that is included, 0 to 1."""
 
     @cached_property
     def control_set(self) -> ControlSet:
@@ -36,7 +36,7 @@ class Regularised(Instance):
 
 
 def sloping(instance: Instance, lam: Array) -> Array:
-    """Costates without zeros, shape (n, N): where a switching function vanishes, a law with |u| shows no slope."""
+    """Return costates with zeros replaced, shape (n, N), since a law with |u| has no slope where they vanish."""
     if not instance.model.spec.regularising or lam.all():
         return lam
     tiny = TINY_COSTATE * np.arange(1.0, len(lam) + 1.0)[:, None]
@@ -44,20 +44,20 @@ def sloping(instance: Instance, lam: Array) -> Array:
 
 
 def regularised(instance: Instance, smoothing: float, fraction: float) -> Regularised:
-    """The regularised problem of an instance."""
+    """Return the regularised problem of an instance."""
     stated = {f.name: getattr(instance, f.name) for f in fields(Instance)}
     return Regularised(**stated, smoothing=smoothing, fraction=fraction)
 
 
 def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array, lam: Array) -> Array:
-    """The control that minimises the regularised problem's Hamiltonian, shape (m, N).
+    """Return the control that minimises the Hamiltonian of the regularised problem, shape (m, N).
 
     Parameters
     ----------
     instance
-        Of a switching problem.
+        Instance of a switching problem.
     control_set
-        Bounds, the smoothing, and the share of the weight of |u| that counts.
+        Bounds, smoothing parameter, and included fraction of the weight of |u|.
     t, x, lam
         Times (N,), states and costates, (n, N).
     """
@@ -75,7 +75,7 @@ def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array
 
 
 def smoothed_cost(instance: Instance, control_set: ControlSet, t: Array, x: Array, u: Array) -> Array:
-    """The regularised problem's running cost, shape (N,)."""
+    """Return the running cost of the regularised problem, shape (N,)."""
     model, p, smoothing, fraction = instance.model, instance.parameters, control_set.smoothing, control_set.fraction
     weight = model.magnitude_weight_batch(t, x, np.zeros_like(x), p)
     exact = model.running_cost_batch(t, x, u, p)

@@ -1,4 +1,4 @@
-"""The slope of H by controls that are directions, and where it vanishes: the law says nothing there."""
+"""The derivative of H with respect to controls that are directions; where it vanishes, it determines no direction."""
 
 from __future__ import annotations
 
@@ -12,21 +12,23 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 VANISHING, MOMENT = 1e-9, 1e-4
-"""Share of the largest slope below which it counts as none, and of the usual one below which its law has a pole."""
+"""Derivative of H, relative to its largest value, below which it counts as zero; and relative to its median, below
+which a direction counts as having a singular point."""
 
 INSTANT = 1e-6
-"""Over which a derivative by explicit time is taken, relative to it."""
+"""Relative step of the finite difference with respect to explicit time."""
 
 
 def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
-    """The slope of H by a direction, shape (components, N): by the controls, or by cosine and sine of an angle.
+    """Return the derivative of H with respect to a direction or to the cosine and sine of an angle, (components, N).
 
-    Of a single control in a box it is the slope with the best of what turns what it multiplies.
+    For a single control in a box it is the derivative with the best direction of the vector that the control
+    multiplies.
 
     Parameters
     ----------
     places
-        Of the controls of the direction.
+        Indices of the controls that form the direction.
     t, x, lam
         Times (N,), states and costates, (n, N).
     """
@@ -52,7 +54,7 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
 
 
 def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.bool_]:
-    """Which controls are directions that nothing decides at an instant, shape (m, N)."""
+    """Return the directions that H does not determine at an instant, shape (m, N)."""
     found = np.zeros((len(instance.model.spec.controls), len(t)), dtype=bool)
     for places, part in instance.control_set.parts:
         if part.directed and part.kind != "box":
@@ -62,7 +64,7 @@ def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.
 
 
 def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
-    """Controls over time, angles without jumps by a turn, and directions that nothing decides as they were before."""
+    """Return continuous controls over time: angles without jumps by a turn, undetermined directions as before."""
     open_ones, found = undecided(instance, t, x, lam), np.array(u)
     for row, unknown in enumerate(open_ones):
         if unknown.any() and not unknown.all():
@@ -73,9 +75,9 @@ def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> A
 
 
 def full_length_smoothing(instance: Instance) -> float:
-    """The smoothing at which full length costs about as much again as time and state do.
+    """Return the smoothing at which full-length controls cost about as much again as time and states.
 
-    Where only the end costs, that is how fast its cost grows, if not at rest then at full length.
+    If only the end has a cost, its rate of growth is used instead, at rest or, if that vanishes, at full length.
     """
     idle = instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))[:, 0]
     directed = [(places, part.reach) for places, part in instance.control_set.parts if part.directed]
@@ -90,7 +92,7 @@ def full_length_smoothing(instance: Instance) -> float:
 
 
 def cost_rate(instance: Instance, u: Array) -> float:
-    """How fast the cost grows at the start under a control: the running cost, and the rate of the terminal one."""
+    """Return the rate of the cost at the start under a control: running cost plus the rate of the terminal cost."""
     model, p, t, x = instance.model, instance.parameters, instance.t0, instance.initial
     found = float(model.running_cost(t, x, tuple(u.tolist()), p))
     if model.spec.has_terminal_cost:
@@ -102,10 +104,10 @@ def cost_rate(instance: Instance, u: Array) -> float:
 
 
 def without_poles(instance: Instance, t: Array, x: Array, lam: Array) -> ControlSet:
-    """The control set of a law with derivatives along an extremal, though the slope by a direction may vanish there.
+    """Return a control set whose law is differentiable along an extremal, even if the derivative of H vanishes.
 
-    Such as at an end that leaves velocities free: how a direction follows the costates grows beyond all bounds towards
-    it, and what that moves vanishes. So little is smoothed that it differs for a last moment only.
+    This happens, for example, at an end with free velocities: the sensitivity of a direction to the costates grows
+    without limit, but its effect vanishes. The smoothing is so small that it only matters for a last moment.
     """
     smallest, usual = float("inf"), 0.0
     for places, part in instance.control_set.parts:
