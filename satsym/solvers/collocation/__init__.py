@@ -1,1 +1,1 @@
-"""Collocation: two-point boundary value problems from a cold start, exact Jacobians, error estimates, bounds."""
+"""Collocation of two-point boundary value problems: cold start, exact Jacobians, error estimates and control bounds."""

@@ -1,8 +1,8 @@
-"""Extremals followed along a path of problems by its arc length, which goes on where the path turns back.
+"""Extremals followed along a path of problems by arc length, also past points where the path turns back.
 
-Each step goes along the tangent and is corrected by Newton's method at right angles to it, so a fold, where
-two extremals meet and none is near in the direction of the path, is passed like any other point
-(Allgower and Georg, Numerical Continuation Methods, chapters 2 and 10).
+Each step follows the tangent and is corrected by Newton's method at right angles to it, so that a fold, where two
+extremals meet and none exists beyond, is passed like any other point (Allgower and Georg, Numerical Continuation
+Methods, chapters 2 and 10).
 """
 
 from __future__ import annotations
@@ -23,45 +23,48 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
 
 Problems = Callable[[float], TwoPoint]
-"""The problem at a share of the way: given values at the ends change, all else stays; at one, the problem itself."""
+"""Function from a fraction of the path to the problem there: only given end values change; at 1 it is the problem
+itself."""
 
 FIRST, SHORTEST = 0.02, 1e-5
-"""Lengths of a step, in shares of the way where only these change: the first one, and where it is given up."""
+"""First and smallest length of a step; a step along the path parameter alone has the length of its fraction. Below the
+smallest length the path is given up."""
 
 CORRECTIONS, TRUSTED, SMALLEST_CORRECTION = 7, 0.3, 1e-4
-"""Newton corrections of a step, the largest size of one, and the size at which they end."""
+"""Maximum number of Newton corrections of a step, largest size of a correction, and size below which corrections
+end."""
 
 FEW_CORRECTIONS, MANY_CORRECTIONS = 3, 5
-"""Corrections up to which the next step is longer, and from which it is shorter."""
+"""Number of corrections up to which the next step is longer, and from which it is shorter."""
 
 AHEAD = 1e-4
-"""Difference of shares with which the slope of the residual is measured."""
+"""Difference of fractions by which the derivative of the residual is computed."""
 
 GROWN = 0.1
-"""Relative change of the number of intervals from which the mesh is laid anew."""
+"""Relative change of the required number of intervals above which a new mesh is used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """A change of a curve and of the share of the way."""
+    """A change of a curve and of the fraction of the path."""
 
     step: Step
     fraction: float
 
     def times(self, factor: float) -> Direction:
-        """This direction, longer or shorter."""
+        """Return this direction multiplied by a factor."""
         return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.fraction)
 
 
 def extremals(at: Problems, start: Curve) -> Iterator[Point]:
-    """Extremals along a path of problems, near enough to each other, for as long as they can be followed.
+    """Yield extremals along a path of problems, close to each other, as long as the path can be followed.
 
     Parameters
     ----------
     at
-        The path. Where it is crossed at one, there is an extremal at exactly one.
+        The path. Where its fraction passes 1, the extremal there is computed for exactly 1.
     start
-        An extremal at its beginning; the first that comes is the next one.
+        Extremal at the beginning of the path; the first one yielded is the next.
     """
     here, tangent, length = Point(at, 0.0, start.on(meshes.laid(at(0.0), start), STAGES)), None, FIRST
     while length >= SHORTEST:
@@ -78,46 +81,46 @@ def extremals(at: Problems, start: Curve) -> Iterator[Point]:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A curve at a share of the way: an extremal there, or near one."""
+    """A curve at a fraction of the path: an extremal there, or an approximation of one."""
 
     at: Problems
     """The path."""
     fraction: float
     curve: Curve
-    """Where on it, and the curve."""
+    """Fraction of the path, and the curve there."""
     known: Linearised | None = None
-    """The equations next to it, if they are at hand."""
+    """Linearised equations near the point, ``None`` if they are not known."""
 
     @cached_property
     def problem(self) -> TwoPoint:
-        """The problem here."""
+        """Return the problem at the point."""
         return self.at(self.fraction)
 
     @cached_property
     def system(self) -> System:
-        """Its equations."""
+        """Return the collocation equations of the problem."""
         return System(self.problem, self.curve.mesh, STAGES)
 
     @cached_property
     def residual(self) -> Residual:
-        """By how much they fail."""
+        """Return the residual of the equations at the point."""
         return self.system.residual(self.curve)
 
     @cached_property
     def linearised(self) -> Linearised:
-        """The equations here, linearised; LinAlgError where they are singular."""
+        """Return the equations linearised at the point; raises LinAlgError if they are singular."""
         return self.known or linearise(self.system, self.curve, self.residual, self.system.jacobian(self.curve))
 
     @property
     def minimum(self) -> bool:
-        """Whether the extremal is one."""
+        """Return whether the extremal is a minimum."""
         try:
             return negative_directions(self.problem, self.curve, self.linearised.matching) == 0
         except np.linalg.LinAlgError:
             return False
 
     def response(self) -> Step:
-        """The change of the extremal by the share of the way."""
+        """Return the derivative of the extremal with respect to the fraction of the path."""
         there = System(self.at(self.fraction + AHEAD), self.curve.mesh, STAGES).residual(self.curve)
         here = self.residual
         slope = replace(
@@ -130,26 +133,26 @@ class Point:
         return self.linearised.step(slope)
 
     def product(self, a: Direction, b: Direction) -> float:
-        """The inner product of directions: the share, and the mean over the nodes by the sizes of the curve."""
+        """Return the inner product of two directions: of their fractions plus the nodal mean of scaled changes."""
         n = self.problem.states
         largest = np.abs(self.curve.nodes).reshape(2, -1).max(axis=1)
         sizes = np.repeat(np.maximum(largest, (1.0, SMALL_COSTATE)), n)[:, None]
         return float((a.step.nodes * b.step.nodes / sizes**2).mean()) + a.fraction * b.fraction
 
     def tangent(self, before: Direction | None) -> Direction:
-        """The direction of the path, of length one, on from the direction before."""
+        """Return the unit tangent of the path, oriented like the previous tangent."""
         along = Direction(self.response(), 1.0)
         back = before is not None and self.product(before, along) < 0.0
         return along.times((-1.0 if back else 1.0) / self.product(along, along) ** 0.5)
 
     def moved(self, direction: Direction, fraction: float | None = None) -> Point:
-        """The point after a change."""
+        """Return the point after a change."""
         there = self.fraction + direction.fraction if fraction is None else fraction
         return Point(self.at, there, self.curve.moved(direction.step, 1.0))
 
 
 def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None, float]:
-    """The next extremal, and the length of the step after it."""
+    """Return the next extremal, or ``None``, and the length of the following step."""
     while length >= SHORTEST:
         step = tangent.times(length)
         arrives = here.fraction != 1.0 and (here.fraction - 1.0) * (here.fraction + step.fraction - 1.0) <= 0.0
@@ -166,7 +169,10 @@ def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None,
 
 
 def _corrected(here: Point, tangent: Direction, step: Direction, arrives: bool) -> tuple[Point | None, int]:
-    """The extremal after a step, across the tangent or, where it arrives, at share one; the corrections it took."""
+    """Return the corrected extremal after a step, and the number of corrections.
+
+    Corrections are at right angles to the tangent or, if the step ends the path, at the fraction 1.
+    """
     if within_domain(here.problem, here.curve, step.step) < 1.0:
         return None, 0
     there, before = here.moved(step, 1.0 if arrives else None), float("inf")
@@ -186,7 +192,7 @@ def _corrected(here: Point, tangent: Direction, step: Direction, arrives: bool) 
 
 
 def _resolved(point: Point, tangent: Direction) -> tuple[Point, Direction]:
-    """A point and its tangent on a mesh that follows the motion."""
+    """Return a point and its tangent on a mesh that fits the motion."""
     curve, step = point.curve, tangent.step
     mesh = meshes.laid(point.problem, curve)
     if abs(len(mesh) - len(curve.mesh)) <= GROWN * len(curve.mesh):
@@ -197,5 +203,5 @@ def _resolved(point: Point, tangent: Direction) -> tuple[Point, Direction]:
 
 
 def _combined(a: Step, by: float, b: Step, other: float) -> Step:
-    """The sum of multiples of two steps."""
+    """Return a linear combination of two steps."""
     return Step(by * a.nodes + other * b.nodes, by * a.stages + other * b.stages, by * a.theta + other * b.theta)

@@ -1,4 +1,4 @@
-"""What comes of an attempt at an extremal, by whatever means: a curve, why it ended there, and what that took."""
+"""Result of an attempt to find an extremal by any method: a curve, the reason for its end, and the work."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from satsym.solvers.collocation.linearised import Linearised
 
 
 class Reason(Enum):
-    """Why an attempt ended, with the words for it."""
+    """Reasons why an attempt ended, with the messages for them."""
 
     MINIMUM = "minimum"
     SADDLE = "saddle"
     EXTREMAL = "extremal"
-    """Nobody asked whether it is a minimum."""
+    """An extremal for which it was not tested whether it is a minimum."""
     OUTGROWN = "the solution needs more mesh intervals than are allowed"
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"
@@ -33,37 +33,38 @@ class Reason(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Where an attempt ended."""
+    """Result of an attempt to find an extremal."""
 
     curve: Curve
-    """The last one."""
+    """Curve at which the attempt ended."""
     reason: Reason
-    """Whether that is an extremal, or why not."""
+    """Whether this curve is an extremal, or why not."""
     iterations: int
-    """Linear systems that were solved."""
+    """Number of linear systems that were solved."""
     cost: float = float("nan")
-    """Scaled cost there; NaN where it was not asked for."""
+    """Scaled cost of the curve; NaN if it was not computed."""
     hard: bool = True
-    """Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima may then
-    be cheaper."""
+    """Whether the iteration was irregular: it had a Gauss-Newton step after the first, or a shortened step. Other
+    minima may then be cheaper."""
     linearised: Linearised | None = None
-    """The equations there, where they are at hand."""
+    """Linearised equations at the curve, ``None`` if they are not known."""
     error: float = float("inf")
-    """Estimated error, at the nodes and between them, relative as in :meth:`Step.size`; infinite where nobody asked."""
+    """Estimated error, at the nodes and between them, relative as in :meth:`Step.size`; infinite if it was not
+    estimated."""
     facts: tuple[float | str, ...] = ()
-    """What the words of the reason leave open."""
+    """Values that are inserted into the message of the reason."""
 
     @property
     def minimum(self) -> bool:
-        """Whether it is a strict local minimum of the discretised problem."""
+        """Return whether the curve is a strict local minimum of the discretised problem."""
         return self.reason is Reason.MINIMUM
 
     @property
     def solved(self) -> bool:
-        """Whether it is a minimum, or an extremal of which nobody asked more."""
+        """Return whether the curve is a minimum, or an extremal that was not tested further."""
         return self.reason in (Reason.MINIMUM, Reason.EXTREMAL)
 
     @property
     def message(self) -> str:
-        """The reason in words."""
+        """Return the message of the reason."""
         return self.reason.value.format(*self.facts)

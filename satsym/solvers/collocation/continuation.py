@@ -1,7 +1,8 @@
-"""Bounds on the control: tightened from where they do not bind, then mesh nodes put on the corners they cause.
+"""Control bounds by continuation: bounds are tightened until they hold, then nodes are placed at corners.
 
-With the projected control law the canonical equations stay one system; its solutions have corners where a bound
-is met or left. Newton converges if it starts near, so the bounds move in as far as they can at a time.
+With the projected control law the canonical equations remain a single system; its solutions have corners where a bound
+becomes active or inactive. Newton's method converges from a nearby start, so the bounds are tightened in steps that are
+as large as possible.
 """
 
 from __future__ import annotations
@@ -22,39 +23,42 @@ from satsym.solvers.control.corners import BEYOND_ZERO, LAST_DIGITS, beyond, enc
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
-"""Share of the largest violation by which the bounds move in first."""
+"""First step of the bounds, relative to the largest violation."""
 
 FASTER = 1.7
 QUICK = 6
-"""Newton corrections up to which the next move is longer."""
+"""``QUICK`` is the number of Newton corrections up to which the next step of the bounds is longer by the factor
+``FASTER``."""
 
 SHORTEST = 1e-4
-"""Share of the largest violation below which a move is given up."""
+"""Length of a step, relative to the largest violation, below which the continuation is given up."""
 
 SAMPLES = 12
-"""Points in each interval between which a corner is looked for."""
+"""Number of points in each interval between which corners are searched for."""
 
 ROUGHLY = 1e-6
-"""Accuracy of solutions on the way, and of the corners at which their nodes lie."""
+"""Accuracy of intermediate solutions, and of the corners at which their nodes lie."""
 
 STILL = 1e-11
 SETTLING = 12
-"""Times that nodes are moved to the corners, and the share of the horizon by which these may then still move."""
+"""Maximum number of times that nodes are moved to the corners. Movement of corners, as a fraction of the duration,
+below which they count as stationary."""
 
 CLOSEST = 1e-7
-"""Smallest distance of two corners that get nodes of their own, as a share of the horizon."""
+"""Smallest distance, as a fraction of the duration, of two corners that get separate nodes."""
 
 NOTHING = 1e-14
-"""What corners off the nodes may leave out where they do not stand still, being passed at next to no slope."""
+"""Error from corners between nodes that is accepted if corners do not become stationary because the crossing is nearly
+tangential."""
 
 
 def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
-    """Lead the extremal without bounds to the one with them.
+    """Continue the extremal without control bounds to the extremal with these bounds.
 
     Parameters
     ----------
     problem
-        With its bounds.
+        Problem with its bounds.
     """
     worst = _violation(problem, free)
     if worst <= 0.0:
@@ -83,12 +87,12 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
 
 
 def corners(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> Array:
-    """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
+    """Return the increasing times in (0, 1) at which the control law of a curve reaches or leaves a bound."""
     return distinct(np.concatenate([np.zeros(0), *by_bound(problem, curve, within)]))
 
 
 def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> list[Array]:
-    """Violations bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
+    """Return these times for each bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
     if not problem.control_set.bounded:
         return []
 
@@ -105,7 +109,7 @@ def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> lis
 
 
 def _changes(signs: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Rows and places before and after each change of sign; zeros between, as right at a node on a corner, are none."""
+    """Return row and positions before and after each change of sign, with zeros between them skipped."""
     row, at = np.nonzero(signs)
     found = signs[row, at]
     changed = np.flatnonzero((row[:-1] == row[1:]) & (found[:-1] != found[1:]))
@@ -113,14 +117,14 @@ def _changes(signs: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[
 
 
 def kept(problem: TwoPoint, curve: Path) -> bool:
-    """Whether the control law without bounds keeps them."""
+    """Return whether the control law without bounds satisfies the bounds."""
     return _violation(problem, curve) <= 0.0
 
 
 def _violation(problem: TwoPoint, curve: Path) -> float:
-    """By how much the control law without bounds leaves the control set, but for rounding; not positive if it does not.
+    """Return the largest violation of the control set by the control law without bounds, at most 0 if there is none.
 
-    That may be for a moment at either end, or between any two points.
+    Violations within rounding do not count. Brief violations at either end and between points are found as well.
     """
     within = problem.instance.control_set
     if not within.bounded:
@@ -132,17 +136,17 @@ def _violation(problem: TwoPoint, curve: Path) -> float:
 
 
 def _unbounded(problem: TwoPoint, curve: Path, tau: Array) -> Array:
-    """The control law of a curve without bounds, shape (m, M)."""
+    """Return the control law of a curve without bounds, shape (m, M)."""
     return problem.control(tau, curve(tau), curve.theta, bounded=False)
 
 
 def _sampled(mesh: Array, excess: Callable[[Array], Array]) -> tuple[Array, Array]:
-    """Times in every interval, with those at which a bound is passed for a moment between them, and the excess there.
+    """Return times in every interval, including those of brief violations between them, and the excess there.
 
     Parameters
     ----------
     excess
-        Signed distances to each bound, shape (bounds, M), at times (M,).
+        Function from times (M,) to signed distances from each bound, shape (bounds, M).
     """
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
     tau = distinct((mesh[:-1, None] + np.diff(mesh)[:, None] * inside).ravel())
@@ -157,9 +161,9 @@ def _sampled(mesh: Array, excess: Callable[[Array], Array]) -> tuple[Array, Arra
 
 
 def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
-    """What corners off the nodes leave out: the rates on one side, followed up to the node beside it or as far beyond.
+    """Return the error from corners between nodes, estimated from the rates on both sides of each corner.
 
-    On the side on which no bound is active those are the rates of the other side as well.
+    On the side on which no bound is active, the rates with and without bounds are equal.
     """
     if not len(met):
         return 0.0
@@ -172,14 +176,14 @@ def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
 
 
 def apart(problem: TwoPoint, curve: Path, rates: Array, late: Array) -> float:
-    """What a difference of rates (2n, M) comes to in so much of the time (M,), relative to the size of a curve."""
+    """Return the effect of a difference of rates (2n, M) over short times (M,), relative to a curve."""
     size = np.abs(curve.nodes).reshape(2, -1).max(axis=1)
     jump = np.abs(rates).reshape(2, problem.states, -1).max(axis=1) / np.maximum(size, (1.0, SMALL_COSTATE))[:, None]
     return float((jump.max(axis=0) * np.abs(late)).max()) * problem.elapsed(curve.theta) / 2.0
 
 
 def through(points: Array, count: int) -> Array:
-    """A mesh of about ``count`` intervals with nodes on the given points, shape (N+1,)."""
+    """Return a mesh of about ``count`` intervals with nodes at the given points, shape (N+1,)."""
     inner = points[(points > CLOSEST) & (points < 1.0 - CLOSEST)]
     ends = np.concatenate([[0.0], inner, [1.0]])
     ends = ends[np.concatenate([[True], np.diff(ends) > CLOSEST])]
@@ -190,21 +194,21 @@ def through(points: Array, count: int) -> Array:
 
 
 def stand_still(before: Array, now: Array) -> bool:
-    """Whether corners have not moved."""
+    """Return whether corners have not moved."""
     return len(before) == len(now) and bool(np.abs(now - before).max(initial=0.0) < STILL)
 
 
 def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Attempt:
-    """Solve within the bounds, from a curve nearby, with nodes on the corners until these stand still.
+    """Solve with control bounds, from a curve nearby, with nodes at the corners until these are stationary.
 
     Parameters
     ----------
     problem
-        With its bounds.
+        Problem with its bounds.
     order
-        Stages; two more are taken.
+        Number of stages; two more are used.
     count
-        Intervals, about.
+        Approximate number of intervals.
     """
     before: Array | None = None
     now, total = corners(problem, curve), 0

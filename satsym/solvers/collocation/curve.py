@@ -12,11 +12,11 @@ from satsym.arrays import Array
 from satsym.solvers.collocation.gauss import barycentric, interpolation, scheme
 
 SMALL_COSTATE = 1e-4
-"""Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
+"""Minimum scale of costates in relative errors, since rounding of the states affects costates by at least as much."""
 
 
 class Path(Protocol):
-    """States and costates over the scaled time tau in [0, 1], smooth between the nodes of a mesh; extra unknowns."""
+    """States and costates over the scaled time tau in [0, 1], smooth between mesh nodes, with extra unknowns."""
 
     @property
     def mesh(self) -> Array:
@@ -24,7 +24,7 @@ class Path(Protocol):
 
     @property
     def nodes(self) -> Array:
-        """Values there, shape (2n, N+1)."""
+        """Values at the nodes, shape (2n, N+1)."""
 
     @property
     def theta(self) -> Array:
@@ -41,7 +41,7 @@ class Curve:
     mesh: Array
     """Nodes in [0, 1], shape (N+1,)."""
     nodes: Array
-    """Values there, shape (2n, N+1)."""
+    """Values at the nodes, shape (2n, N+1)."""
     stages: Array
     """Values at the s Gauss points of each interval, shape (2n, N, s)."""
     theta: Array
@@ -49,16 +49,16 @@ class Curve:
 
     @property
     def order(self) -> int:
-        """Number s of stages."""
+        """Return the number s of stages."""
         return int(self.stages.shape[2])
 
     @property
     def flat(self) -> Array:
-        """The stage values in order of time, shape (2n, N s)."""
+        """Return the stage values in order of time, shape (2n, N s)."""
         return self.stages.reshape(len(self.stages), -1)
 
     def __call__(self, tau: Array) -> Array:
-        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+        """Return the values at ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         mesh = self.mesh
         interval = np.searchsorted(mesh[1:-1], tau, side="right")
@@ -72,7 +72,7 @@ class Curve:
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:
-        """This curve, as far as that can be, on another mesh or with another number of stages."""
+        """Return this curve interpolated on another mesh or with another number of stages."""
         if mesh is self.mesh:
             return self.with_stages(order)
         tau = stage_times(mesh, order)
@@ -80,18 +80,18 @@ class Curve:
         return Curve(mesh, self(mesh), stages, self.theta)
 
     def with_stages(self, order: int) -> Curve:
-        """The polynomials by their values at another number of Gauss points."""
+        """Return the same polynomials, represented by their values at another number of Gauss points."""
         if order == self.order:
             return self
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
         return Curve(self.mesh, self.nodes, known @ interpolation(self.order, order).T, self.theta)
 
     def in_domain(self, positive: tuple[int, ...]) -> bool:
-        """Whether the states of these indices are positive everywhere."""
+        """Return whether the states with the given indices are positive everywhere."""
         return all(self.stages[i].min() > 0.0 and self.nodes[i].min() > 0.0 for i in positive)
 
     def moved(self, step: Step, length: float) -> Curve:
-        """The curve after a share of a step."""
+        """Return the curve after a fraction of a step."""
         if length == 1.0:
             return Curve(self.mesh, self.nodes + step.nodes, self.stages + step.stages, self.theta + step.theta)
         return Curve(
@@ -104,14 +104,14 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A change of a curve, in the same shapes."""
+    """A change of a curve, in arrays of the same shapes."""
 
     nodes: Array
     stages: Array
     theta: Array
 
     def size(self, curve: Curve, small: float = SMALL_COSTATE) -> float:
-        """Largest change: states relative to their size (at least one), costates relative to theirs (``small``)."""
+        """Return the largest change, relative to the states (at least 1) and costates (at least ``small``)."""
         sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, small))
         found = (_largest(self.nodes, self.stages) / sizes).max()
         if len(self.theta):
@@ -120,13 +120,13 @@ class Step:
 
 
 def _largest(nodes: Array, stages: Array) -> Array:
-    """The largest state and the largest costate."""
+    """Return the magnitudes of the largest state and the largest costate."""
     both = np.concatenate([nodes, stages.reshape(len(stages), -1)], axis=1)
     largest: Array = np.abs(both).reshape(2, -1).max(axis=1)
     return largest
 
 
 def stage_times(mesh: Array, order: int) -> Array:
-    """Gauss points of each interval, shape (N, s)."""
+    """Return the Gauss points of each interval, shape (N, s)."""
     times: Array = mesh[:-1, None] + (mesh[1:] - mesh[:-1])[:, None] * scheme(order).nodes
     return times

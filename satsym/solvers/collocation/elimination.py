@@ -1,4 +1,4 @@
-"""The two linear systems of a collocation step: the stages of each interval, and the nodes between the intervals."""
+"""The two linear systems of a collocation step: for the stages of each interval, and for the nodes of the mesh."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from satsym.arrays import Array
 from satsym.lapack import lapack
 
 AT_ONCE = 2
-"""Times that the stages are solved for without keeping factors."""
+"""Number of times that the stages are solved for directly, before factors are kept."""
 
 
 class Blocks:
-    """Square matrices of a stack, to be solved with.
+    """Stack of square matrices with which linear systems are solved.
 
     Parameters
     ----------
     matrices
-        Shape (N, k, k).
+        Stack of matrices, shape (N, k, k).
     """
 
     def __init__(self, matrices: Array) -> None:
@@ -29,9 +29,9 @@ class Blocks:
         self._solved = 0
 
     def solve(self, right: Array) -> Array:
-        """Solutions for right-hand sides, both of shape (N, columns, k): a column of the system is a row here.
+        """Return solutions for right-hand sides, both of shape (N, columns, k): columns of the system are rows here.
 
-        The first times they are solved for at once; after that factors are kept.
+        The first calls solve directly; later calls keep the factors of the matrices.
 
         Raises
         ------
@@ -55,12 +55,12 @@ class Blocks:
 
 
 class Nodes:
-    """The system that remains once the stages are eliminated: initial rows, transitions, final rows.
+    """The linear system that remains when the stages are eliminated: initial rows, transitions, final rows.
 
     Parameters
     ----------
     transition
-        From each node to the next, shape (N, 2n, 2n).
+        Transition matrices from each node to the next, shape (N, 2n, 2n).
     final
         Derivatives of the final residuals with respect to the last node, shape (n, 2n).
 
@@ -85,13 +85,13 @@ class Nodes:
             raise np.linalg.LinAlgError("singular")
 
     def solve(self, right: Array) -> Array:
-        """Nodes for right-hand sides, initial rows first, shape (2n (N+1), columns); in that shape."""
+        """Return node values for right-hand sides, initial rows first, both of shape (2n (N+1), columns)."""
         return np.asarray(lapack().dgbtrs(self._factors, *self._band, right, self._pivots)[0])
 
 
 @lru_cache
 def _band(half: int, count: int) -> tuple[Any, ...]:
-    """Widths of the band, and where transition matrices, initial and final rows lie in LAPACK's storage."""
+    """Return the widths of the band, and the positions of all matrix entries in LAPACK's storage."""
     n = 2 * half
     a, b = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
     kl, ku = half + n - 1, n - 1
@@ -110,26 +110,27 @@ def _band(half: int, count: int) -> tuple[Any, ...]:
 
 
 class Matching:
-    """Newton's linear system for the nodes: a given start, intervals that must meet, residuals at the end; factored.
+    """Factored linear system of Newton's method for the nodes: initial values, continuity, and final residuals.
 
-    Extra unknowns, such as a free duration, are bordered: one more right-hand side each.
+    Extra unknowns, such as a free duration, are treated by bordering, with one more right-hand side each.
 
     Attributes
     ----------
     transition
-        As it was given.
+        Transition matrices of the intervals.
 
     Parameters
     ----------
     transition
-        Ends of the N intervals by their starts, shape (N, 2n, 2n).
+        Derivatives of the ends of the N intervals with respect to their beginnings, shape (N, 2n, 2n).
     by_theta
-        Ends of the intervals by the extra unknowns, shape (N, 2n, e).
+        Derivatives of the ends of the intervals with respect to the extra unknowns, shape (N, 2n, e).
     finish_by_end, finish_by_theta
-        Residuals at the end by the values there and by the extra unknowns, shapes (n + e, 2n) and (n + e, e).
+        Derivatives of the final residuals with respect to the final values and the extra unknowns, shapes (n + e, 2n)
+        and (n + e, e).
     mixed
-        Whether the system without the extra unknowns is singular. The last residuals are then added to the others at
-        the end, by which the whole stays equivalent.
+        Whether the system without the extra unknowns is singular. The last residuals are then added to the other final
+        residuals, which gives an equivalent system.
 
     Raises
     ------
@@ -159,14 +160,14 @@ class Matching:
             self._columns = self._between.solve(-right)
 
     def correction(self, defects: Array, start: Array, finish: Array) -> tuple[Array, Array]:
-        """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns, shape (e,).
+        """Return corrections of the nodes, shape (N+1, 2n), and of the extra unknowns, shape (e,).
 
         Parameters
         ----------
         defects
-            Where each interval ends, less where the next one begins, shape (N, 2n).
+            End of each interval minus the beginning of the next one, shape (N, 2n).
         start, finish
-            Residuals at the boundary, shapes (n,) and (n + e,).
+            Residuals at both boundaries, shapes (n,) and (n + e,).
         """
         half = len(start)
         finish = finish if self._mixing is None else self._mixed(finish)
@@ -177,13 +178,13 @@ class Matching:
         return (nodes + self._columns @ theta).reshape(-1, 2 * half), theta
 
     def _mixed(self, finish: Array) -> Array:
-        """Rows at the end with the last ones added to the others."""
+        """Return the final rows with the last ones added to the others."""
         assert self._mixing is not None
         half = len(self._mixing)
         return np.concatenate([finish[:half] + self._mixing @ finish[half:], finish[half:]])
 
     def reduced(self) -> Array:
-        """The last residuals by the extra unknowns, all else solved for, shape (e, e)."""
+        """Return derivatives of the last residuals by the extra unknowns with all others eliminated, shape (e, e)."""
         if self._columns is None:
             return self._slopes
         return np.asarray(self._slopes + self._lower @ self._columns[-self.transition.shape[1] :])

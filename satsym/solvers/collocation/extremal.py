@@ -1,4 +1,4 @@
-"""What solving for given ends comes to, by whatever method."""
+"""Result of solving for given end conditions, by any method."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ from satsym.status import Status
 
 @dataclass(frozen=True, eq=False)
 class Extremal:
-    """What solving came to: an extremal, or what was tried last and why it is none."""
+    """An extremal or, if none was found, the last path and the reason."""
 
     problem: TwoPoint
     """The two-point problem, with its bounds."""
     path: Path
     """States, costates and extra unknowns, scaled."""
     cost: float
-    """The cost J; infinite where there is no answer."""
+    """The cost J; infinite if there is no answer."""
     status: Status
     message: str
-    """Outcome."""
+    """Outcome as a status and a message."""
     iterations: int
-    """Linear systems that were solved."""
+    """Number of linear systems that were solved."""
     obeys: bool = False
-    """Without an answer: whether the path still obeys the problem itself, and not only an easier one on the way."""
+    """Whether the path of a failed solution satisfies the equations of the problem itself, and not only of an easier
+    one."""

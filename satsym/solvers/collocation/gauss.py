@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 from satsym.arrays import Array
 
 STAGES = 5
-"""Stages of the collocation equations that are solved: order 10 at the nodes of a mesh."""
+"""Number of stages of the collocation equations, which gives order 10 at the nodes of a mesh."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,27 +26,27 @@ class Scheme:
     """Gauss points and weights, shape (s,)."""
     matrix: Array
     inverse: Array
-    """Integrals of the Lagrange polynomials up to each node, shape (s, s), and the inverse of that."""
+    """Integrals of the Lagrange polynomials up to each node, shape (s, s), and the inverse of this matrix."""
     end: Array
-    """``weights @ inverse``: from differences at the stages to the difference at the end."""
+    """``weights @ inverse``: factors from differences at the stages to the difference at the end."""
     coefficients: Array
-    """From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1)."""
+    """Matrix from values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1)."""
     known: Array
-    """Where values are known: 0 and the stages, shape (s + 1,)."""
+    """Points at which values are known: 0 and the stages, shape (s + 1,)."""
     barycentric: Array
     """Weights of Lagrange's formula through 0 and the stages, shape (s + 1,)."""
 
 
 @lru_cache
 def interpolation(stages: int, onto: int) -> Array:
-    """The matrix from values at 0 and at a scheme's stages to those at another's stages, shape (onto, stages + 1)."""
+    """Return the matrix from values at 0 and at the stages to values at another scheme's stages, (onto, stages + 1)."""
     return lagrange(stages, scheme(onto).nodes)
 
 
 def lagrange(stages: int, places: Array) -> Array:
-    """The matrix from values at 0 and at the stages to those at places in [0, 1], shape (M, stages + 1).
+    """Return the matrix from values at 0 and at the stages to values at points in [0, 1], shape (M, stages + 1).
 
-    By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
+    It uses the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
     """
     table, total = barycentric(stages, places)
     table /= total
@@ -54,7 +54,7 @@ def lagrange(stages: int, places: Array) -> Array:
 
 
 def barycentric(stages: int, places: Array) -> tuple[Array, Array]:
-    """Transposed weights of :func:`lagrange`, not yet divided, and the divisors, shapes (stages + 1, M) and (M,)."""
+    """Return transposed weights of :func:`lagrange` before division, (stages + 1, M), and the divisors, (M,)."""
     own = scheme(stages)
     table: Array = places - own.known[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -67,7 +67,7 @@ def barycentric(stages: int, places: Array) -> tuple[Array, Array]:
 
 @lru_cache
 def scheme(stages: int) -> Scheme:
-    """The scheme with that many stages."""
+    """Return the Gauss scheme with the given number of stages."""
     x, w = legendre.leggauss(stages)
     to_coefficients = np.linalg.inv(legendre.legvander(x, stages - 1))
     integrals = [legendre.legval(x, legendre.legint(unit, lbnd=-1)) for unit in np.eye(stages)]

@@ -1,6 +1,6 @@
-"""The linearised collocation equations, factored: corrections of nodes, extra unknowns and all between the nodes.
+"""The linearised and factored collocation equations: corrections of nodes, stages and extra unknowns.
 
-With the stages eliminated, what remains couples neighbouring nodes only.
+When the stages are eliminated, the remaining system couples neighbouring nodes only.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from satsym.solvers.collocation.system import Residual, System
 
 
 class Linearised:
-    """A factored linearisation, ready for right-hand sides.
+    """A factored linearisation of the collocation equations, for several right-hand sides.
 
     Attributes
     ----------
     matching
-        What remains: the system of the nodes and the extra unknowns.
+        The remaining system of the nodes and the extra unknowns.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class Linearised:
         self._extra, self._residual, self._local_step = extra, residual, local
 
     def step(self, residual: Residual) -> Step:
-        """The Newton correction for a residual."""
+        """Return the Newton correction for a residual."""
         local = self._local(residual)
         defects = self.system.scheme.end @ local
         for k, one in self._residual.saltations.items():
@@ -49,14 +49,14 @@ class Linearised:
         return Step(nodes.T, stages.transpose(2, 0, 1), theta)
 
     def spread(self, nodes: Array, theta: Array, onto: Array | None) -> Array:
-        """What corrections of the nodes and the extra unknowns do between the nodes.
+        """Return the corrections between the nodes that follow from corrections of the nodes and the extra unknowns.
 
         Parameters
         ----------
         nodes, theta
-            As from :meth:`Matching.correction`.
+            Corrections as returned by :meth:`Matching.correction`.
         onto
-            Interpolation from the start and the stages of an interval to other points; ``None``: the stages.
+            Interpolation from the beginning and the stages of an interval to other points; ``None`` means the stages.
 
         Returns
         -------
@@ -71,7 +71,7 @@ class Linearised:
         return onto[:, 1:] @ inner + onto[:, :1] * nodes[:-1, None]
 
     def fundamental(self, onto: Array) -> Array:
-        """How values between the nodes follow the start of their interval, shape (N, points, 2n, 2n)."""
+        """Return derivatives of values between the nodes by the beginning of their interval, (N, points, 2n, 2n)."""
         count, s, n = self.system.intervals, self.system.order, self.system.rows
         inner = self._response.reshape(count, n, s, n)
         found: Array = np.einsum("kj,ibja->ikab", onto[:, 1:], inner)
@@ -79,7 +79,7 @@ class Linearised:
         return found
 
     def _local(self, residual: Residual) -> Array:
-        """Corrections of the stages that keep the nodes, shape (N, s, 2n); known already for the first residual."""
+        """Return corrections of the stages for fixed nodes, shape (N, s, 2n); cached for the first residual."""
         shape = (self.system.intervals, self.system.order, self.system.rows)
         if residual is self._residual:
             return self._local_step.reshape(shape)
@@ -89,17 +89,17 @@ class Linearised:
 def linearise(
     system: System, curve: Curve, residual: Residual, jacobian: Array, at_end: Array | None = None
 ) -> Linearised:
-    """Eliminate the stages, interval by interval and all intervals in one call, and factor what remains.
+    """Eliminate the stages of all intervals in one call, and factor the remaining system.
 
     Parameters
     ----------
     at_end
-        The boundary residuals by the end, if others are meant than those of the problem.
+        Derivatives of the final residuals by the final values, if they differ from those of the problem.
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        If the equations are singular here.
+        If the equations are singular at the curve.
     """
     n, s, count, e = system.rows, system.order, system.intervals, system.problem.unknowns
     by_stage = jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1).reshape(count, 1, n, s * n)
@@ -129,14 +129,14 @@ def linearise(
 
 @lru_cache
 def _by_nodes(count: int, stages: int, n: int, extra: int) -> Array:
-    """Right-hand sides of the stages by the start of their interval; then room for a residual and extra unknowns."""
+    """Return right-hand sides of the stages for the interval's beginning, with space for residual and unknowns."""
     right = np.zeros((count, n + 1 + extra, stages, n))
     right[:, np.arange(n), :, np.arange(n)] = 1.0
     return right.reshape(count, n + 1 + extra, stages * n)
 
 
 def _by_duration(system: System, curve: Curve, residual: Residual) -> Array:
-    """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""
+    """Return the negative derivative of the stage residuals with respect to the duration, shape (2n, N, s)."""
     drift = system.problem.drift(system.tau, curve.flat, curve.theta)
     if np.ndim(drift) == 0:
         return residual.rates

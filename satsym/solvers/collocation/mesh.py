@@ -1,4 +1,4 @@
-"""Meshes that follow the motion: no interval longer than the fastest mode takes for a given angle."""
+"""Meshes that fit the motion: in each interval the fastest mode turns by at most a given angle."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.problem import TwoPoint
 
 TURN = 1.0
-"""Angle, in radians, that the fastest mode may pass in one interval. With less than about six intervals a turn the
-collocation equations have solutions of their own."""
+"""Largest angle, in rad, by which the fastest mode turns in one interval. With fewer than about six intervals per turn
+the collocation equations have spurious solutions."""
 
 COARSEST = 2.5 * TURN
-"""Angle in one interval beyond which the mesh is laid anew."""
+"""Angle in one interval, in rad, above which a new mesh is used."""
 
 FEWEST, MOST_INTERVALS = 6, 400
 
 
 def laid(problem: TwoPoint, curve: Curve) -> Array:
-    """The mesh for the states of a curve, shape (N+1,)."""
+    """Return the mesh for the states of a curve, shape (N+1,)."""
     n = problem.states
     tau = np.concatenate([curve.mesh[:-1, None], stage_times(curve.mesh, curve.order)], axis=1)
     x = np.concatenate([curve.nodes[:n, :-1, None], curve.stages[:n]], axis=2)
@@ -27,7 +27,7 @@ def laid(problem: TwoPoint, curve: Curve) -> Array:
 
 
 def along(problem: TwoPoint, tau: Array, x: Array, theta: Array) -> Array:
-    """The mesh for a path of states.
+    """Return the mesh for a path of states.
 
     Parameters
     ----------

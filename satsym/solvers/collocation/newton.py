@@ -1,8 +1,8 @@
-"""Newton's method on the collocation equations, from a good curve: damped by the natural monotonicity test.
+"""Newton's method for the collocation equations from a good initial curve, damped by the natural monotonicity test.
 
-Exact Jacobians make it converge quadratically, also where bounds are active (the equations are then only
-semismooth). The test compares simplified corrections, so it does not depend on how equations are scaled
-(Deuflhard, Newton Methods for Nonlinear Problems, 3.3).
+With exact Jacobians it converges quadratically, also with active bounds, where the equations are only semismooth. The
+test compares simplified corrections, so that it does not depend on the scaling of the equations (Deuflhard, Newton
+Methods for Nonlinear Problems, 3.3).
 """
 
 from __future__ import annotations
@@ -16,21 +16,25 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import Residual, System
 
 KEEP = 0.3
-"""Share of a positive state that a step must leave."""
+"""Fraction of a positive state that has to remain after a step."""
 
 SURE = 1e-4
-"""Corrections below this are taken whole."""
+"""Size of corrections below which full steps are taken without a test."""
 
 SHORTEST = 1e-3
 ABOUT = 1e-3
-"""Share of the states' size by which equations of motion and ends may be missed by what counts as a solution."""
+"""Largest residual of the equations of motion and end conditions, relative to the states, of a curve that counts as a
+solution."""
 
 FLOOR = 1e-9
-"""Corrections below this that no longer shrink are rounding."""
+"""Size below which corrections that no longer decrease count as rounding."""
 
 
 def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Attempt | None:
-    """Newton from a curve on the system's mesh; ``None`` where the equations are singular or not finite."""
+    """Solve the equations by Newton's method from a curve on the system's mesh.
+
+    Returns ``None`` if the equations are singular or not finite.
+    """
     problem, curve = system.problem, start
     residual = system.residual(curve)
     before = float("inf")
@@ -64,14 +68,14 @@ def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 1
 
 
 def _moves(system: System, curve: Curve, residual: Residual) -> bool:
-    """Whether states obey their equations, about: to costates beyond all bounds any correction is small."""
+    """Return whether states roughly satisfy their equations; with very large costates every correction seems small."""
     n = system.problem.states
     size = max(1.0, float(np.abs(curve.nodes[:n]).max()))
     return float(system.infeasibility(residual)[:n].max()) <= ABOUT * size
 
 
 def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:
-    """The longest part of a step, at most all of it, that leaves positive states positive and the duration sane."""
+    """Return the largest fraction of a step that keeps positive states positive and the duration reasonable."""
     length = 1.0
     for i in problem.positive:
         fall = max((-step.stages[i] / curve.stages[i]).max(), (-step.nodes[i] / curve.nodes[i]).max())

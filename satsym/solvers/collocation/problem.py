@@ -1,8 +1,8 @@
-"""An instance as a two-point boundary value problem in scaled variables: all that collocation and shooting see.
+"""An instance as a two-point boundary value problem in scaled variables, for collocation and shooting.
 
-States are divided by their size along the way, costates by energy over that, so that kilometres and seconds at
-geostationary height look like radius one: everything is of order one, and the response of the states to the
-costates at most so over the horizon.
+States are divided by their magnitude along the motion, costates by the unit of cost over that of the state, so that
+kilometres and seconds at geostationary height become a radius of one: all quantities are of order one, and the response
+of the states to the costates over the duration is at most of order one.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from satsym.solvers.control.jumps import Jump, Saltation, beside, saltation
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
 ROUNDING = 1e-10
-"""Share of a control by which rounding may seem to move it beyond a bound."""
+"""Change of a control beyond a bound, relative to the control, that counts as rounding."""
 
 ROUNDED_MISS = 1e-9
-"""Scaled miss of the end that may be rounding."""
+"""Scaled residual of the end conditions that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +32,9 @@ class Scale:
     """Units of the scaled problem."""
 
     state: Array
-    """The unit of each state, shape (n,)."""
+    """Unit of each state, shape (n,)."""
     cost: float
-    """The unit of the cost; a costate has the unit cost over state."""
+    """Unit of the cost; the unit of a costate is that of the cost divided by that of the state."""
 
     @cached_property
     def both(self) -> Array:
@@ -43,28 +43,29 @@ class Scale:
 
     @cached_property
     def ratio(self) -> Array:
-        """What turns a Jacobian into the scaled one, shape (2n, 2n, 1)."""
+        """Factors that convert a Jacobian into the scaled one, shape (2n, 2n, 1)."""
         return (self.both.T / self.both)[:, :, None]
 
 
 @dataclass(frozen=True, eq=False)
 class TwoPoint:
-    """The canonical equations from the given initial state to the right end that an instance asks for.
+    """The canonical equations from the given initial state to the end conditions of an instance.
 
     Unknowns are z = (states, costates), scaled, over tau in [0, 1], and ``theta``: the multipliers of terminal
-    constraints (scaled by the cost), then the duration where it is free.
+    constraints (scaled by the cost), and the duration if it is free.
     """
 
     instance: Instance
-    """What is solved."""
+    """The instance that is solved."""
     final: tuple[float, ...]
-    """The ``final`` argument of the boundary functions: given, on reference, target, state by state."""
+    """The ``final`` argument of the boundary functions: for all states whether given, whether on the reference, and
+    target."""
     duration: float
-    """tf - t0; where it is free, where to start."""
+    """Duration tf - t0; an initial guess if it is free."""
     scale: Scale
-    """Units."""
+    """Units of the scaled problem."""
     relaxation: float = 0.0
-    """By how much every bound of the control is moved outwards; infinite: no bounds."""
+    """Distance by which every bound of the control is relaxed; infinite without bounds."""
 
     @cached_property
     def states(self) -> int:
@@ -78,9 +79,10 @@ class TwoPoint:
 
     @cached_property
     def homogeneous(self) -> bool:
-        """Whether only the residual of a free duration may tell costates from multiples of them.
+        """Whether costates are determined up to a factor only, except by the residual of a free duration.
 
-        So it is where the law depends on their direction alone, that of a direction or of controls that switch.
+        This is so if the control law depends on the direction of the costates alone, as for controls that are
+        directions or that switch.
         """
         return self.free_time and self.instance.model.spec.directional and self.control_set.smoothing <= UNSMOOTHED
 
@@ -91,7 +93,7 @@ class TwoPoint:
 
     @cached_property
     def theta(self) -> Array:
-        """Where ``theta`` starts: no multipliers, the first guess of the duration."""
+        """Initial guess of ``theta``: zero multipliers, and the guess of the duration."""
         start = np.zeros(self.unknowns)
         if self.free_time:
             start[-1] = self.duration
@@ -99,7 +101,7 @@ class TwoPoint:
 
     @cached_property
     def initial(self) -> Array:
-        """The initial state, scaled."""
+        """The scaled initial state."""
         return np.array(self.instance.initial) / self.scale.state
 
     @cached_property
@@ -109,16 +111,16 @@ class TwoPoint:
 
     @cached_property
     def control_set(self) -> ControlSet:
-        """The admissible controls, bounds relaxed."""
+        """The admissible controls, with relaxed bounds."""
         return self.instance.control_set.relaxed(self.relaxation)
 
     def relaxed(self, by: float) -> TwoPoint:
-        """This problem with bounds relaxed by so much: itself where there are none to be moved."""
+        """Return this problem with bounds relaxed by the given distance, or itself if it has no bounds."""
         moved = self.instance.control_set.relaxed(by)
         return self if moved == self.control_set else replace(self, relaxation=by)
 
     def elapsed(self, theta: Array) -> float:
-        """The duration."""
+        """Return the duration."""
         return float(theta[-1]) if self.free_time else self.duration
 
     def _arguments(self, tau: Array, z: Array, theta: Array) -> tuple[Array, Array, Array, tuple[float, ...]]:
@@ -127,11 +129,11 @@ class TwoPoint:
         return t, physical[: self.states], sloping(self.instance, physical[self.states :]), self.instance.parameters
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
-        """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
+        """Return dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
         return self._of(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
 
     def rates_beyond(self, tau: Array, z: Array, theta: Array) -> Array:
-        """The rates if no bound held the control; where H may have no minimum then, by a step of Newton's method."""
+        """Return the rates without control bounds, by one Newton step beyond the bounds if H may have no minimum."""
         model = self.instance.model
         if not model.spec.stationary:
             return self.relaxed(float("inf")).rates(tau, z, theta)
@@ -141,19 +143,19 @@ class TwoPoint:
         return np.asarray(np.concatenate(rates) / self.scale.both)
 
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
-        """The rates by z, shape (2n, 2n, N)."""
+        """Return the derivatives of the rates with respect to z, shape (2n, 2n, N)."""
         shape = (len(z), *z.shape)
         return self._of(self.instance.model.canonical_jacobian_batch, shape, tau, z, theta) * self.scale.ratio
 
     def _of(self, kernel: Any, shape: tuple[int, ...], tau: Array, z: Array, theta: Array) -> Array:
-        """Values of a kernel of the canonical equations."""
+        """Return the values of a kernel of the canonical equations."""
         arguments = self._arguments(tau, z, theta)
         found = np.empty(shape, z.dtype)  # given, so that kernels need not find out shapes and types
         kernel(*arguments, self.control_set.arguments, out=found)
         return found
 
     def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
-        """The rates by explicit time, shape (2n, N)."""
+        """Return the derivatives of the rates with respect to explicit time, shape (2n, N), or 0."""
         if self.instance.model.spec.autonomous:
             return 0.0
         slopes: Array = self.instance.model.canonical_drift_batch(
@@ -162,18 +164,18 @@ class TwoPoint:
         return slopes / self.scale.both
 
     def saltation(self, tau: float, z: Array, theta: Array, jump: Jump) -> Saltation:
-        """How neighbouring extremals pass a jump at ``tau`` and ``z`` (2n,)."""
+        """Return the effect of a jump at ``tau`` and ``z`` (2n,) on neighbouring extremals."""
         t, unit = self.instance.t0 + self.elapsed(theta) * tau, self.scale.both[:, 0]
         return saltation(self.instance, t, z * unit, jump, unit, self.scale.cost)
 
     def between(self, tau: float, z: Array, theta: Array, jump: Jump) -> float:
-        """How far apart the minimisers of H are that a jump joins, at ``tau`` and ``z`` (2n,)."""
+        """Return the distance between the minimisers of H on both sides of a jump, at ``tau`` and ``z`` (2n,)."""
         t, physical = self.instance.t0 + self.elapsed(theta) * tau, z * self.scale.both[:, 0]
         before, after = (beside(self.instance, t, physical, u) for u in (jump.before, jump.after))
         return float(np.abs(after - before).max())
 
     def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
-        """The integrand of the cost under the control law, scaled, shape (N,)."""
+        """Return the scaled running cost under the control law, shape (N,)."""
         t, x, lam, p = self._arguments(tau, z, theta)
         model = self.instance.model
         if model.spec.switching:
@@ -187,20 +189,20 @@ class TwoPoint:
         return np.asarray(found / self.scale.cost)
 
     def _law(self, t: Array, x: Array, lam: Array, p: Row, within: ControlSet) -> Array:
-        """The control law within a set, by its batch form, shape (m, N)."""
+        """Return the control law within a set, by its batch form, shape (m, N)."""
         found = np.empty((len(self.instance.model.spec.controls), *x.shape[1:]), x.dtype)
         self.instance.model.control_law_batch(t, x, lam, p, within.arguments, out=found)
         return found
 
     def terminal_cost(self, end: Array, theta: Array) -> float:
-        """S at the end, scaled."""
+        """Return the scaled terminal cost S."""
         x = tuple((end[: self.states] * self.scale.state).tolist())
         tf = self.instance.t0 + self.elapsed(theta)
         return float(self.instance.model.terminal_cost(tf, x, self.instance.parameters)) / self.scale.cost
 
     @property
     def at_once(self) -> float:
-        """The cost, in the model's units, of ending where and when the motion begins; infinite where that is no end."""
+        """Return the cost of a motion of no duration; infinite if it does not meet the end conditions."""
         end, theta = np.concatenate([self.initial, np.zeros(self.states)]), np.zeros(self.unknowns)
         constrained = np.ones(self.unknowns - self.free_time, dtype=bool)
         missed = self.boundary(end, theta)[: self.unknowns - self.free_time + self.states]
@@ -209,7 +211,7 @@ class TwoPoint:
         return self.terminal_cost(end, theta) * self.scale.cost
 
     def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
-        """The control law, in the model's units, shape (m, N)."""
+        """Return the control law in the model's units, shape (m, N)."""
         control_set = self.control_set if bounded else self.instance.control_set.without_bounds
         if self.instance.model.spec.switching:
             t, x, lam, _ = self._arguments(tau, z, theta)
@@ -220,9 +222,9 @@ class TwoPoint:
         return self._law(*arguments, control_set)
 
     def _beyond(self, t: Array, x: Array, lam: Array, p: Row) -> Array:
-        """The law within its bounds, moved by a step of Newton's method for H: beyond bounds that hold it.
+        """Return the control law moved by a Newton step for H, and thus beyond bounds at which H holds it.
 
-        Without bounds there may be no minimiser, and an angle may be a turn away.
+        Without bounds H may have no minimiser, and an angle may differ by a turn.
         """
         model = self.instance.model
         law = np.array(model.control_law_batch(t, x, lam, p, self.control_set.arguments))
@@ -236,12 +238,12 @@ class TwoPoint:
         return np.asarray(law - within)
 
     def boundary(self, end: Array, theta: Array) -> Array:
-        """Residuals at the right end, scaled, shape (n + e,).
+        """Return the scaled residuals of the final conditions, shape (n + e,).
 
         Parameters
         ----------
         end
-            z at the end, shape (2n,).
+            Scaled final values z, shape (2n,).
         theta
             Extra unknowns, shape (e,).
         """
@@ -252,12 +254,12 @@ class TwoPoint:
         return residual
 
     def ending(self, end: Array, theta: Array) -> tuple[Array, Array, Array]:
-        """Residuals at the right end, and their derivatives by ``end`` and ``theta``."""
+        """Return the residuals of the final conditions, and their derivatives by ``end`` and ``theta``."""
         at = self._at_the_end(end, theta)
         return self._missed(at), *self._sloping(at)
 
     def boundary_slopes(self, end: Array, theta: Array) -> tuple[Array, Array]:
-        """Derivatives of the former by ``end`` and ``theta``, shapes (n + e, 2n) and (n + e, e)."""
+        """Return the derivatives of the final residuals by ``end`` and ``theta``, (n + e, 2n) and (n + e, e)."""
         return self._sloping(self._at_the_end(end, theta))
 
     def _sloping(self, at: tuple[Any, ...]) -> tuple[Array, Array]:
@@ -269,7 +271,7 @@ class TwoPoint:
         return scaled[:, : 2 * n], scaled[:, 2 * n :]
 
     def _at_the_end(self, end: Array, theta: Array) -> tuple[Any, ...]:
-        """Arguments of the boundary functions."""
+        """Return the arguments of the boundary functions."""
         n, multipliers = self.states, self.unknowns - self.free_time
         physical = (end * self.scale.both[:, 0]).tolist()
         if self.instance.model.spec.throttled:
@@ -288,7 +290,7 @@ class TwoPoint:
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:
-        """Which states have their end given or on the reference, shape (n,)."""
+        """Whether each final state is given or prescribed by the reference, shape (n,)."""
         n = self.states
         return np.array(self.final[:n]) + np.array(self.final[n : 2 * n]) > 0
 
@@ -308,9 +310,9 @@ class TwoPoint:
 
 
 def ended(instance: Instance, tf: float, x: Row, lam: Row, *others: Any, by: Literal["", "jacobian"] = "") -> Array:
-    """The boundary residuals of an instance, or their derivatives: no numbers where the law says nothing.
+    """Return the boundary residuals of an instance or their derivatives; NaN where the control law is undefined.
 
-    On floats it may raise there.
+    With scalar kernels an exception may be raised there.
     """
     model = instance.model
     if not model.spec.stationary:

@@ -1,4 +1,4 @@
-"""From an instance to its scaled two-point problem."""
+"""Conversion of an instance into its scaled two-point problem."""
 
 from __future__ import annotations
 
@@ -12,26 +12,28 @@ from satsym.solvers.control.regularised import sloping
 from satsym.solvers.control.slopes import full_length_smoothing
 
 POINTS = 9
-"""Points of the straight line at which sizes and responses are looked at."""
+"""Number of points on the straight line at which magnitudes and responses are evaluated."""
 
 NO_SLOPE = 1e-40
-"""Largest slope of costates that are none, see :func:`satsym.solvers.control.regularised.sloping`."""
+"""Largest derivative that counts as zero for vanishing costates, see
+:func:`satsym.solvers.control.regularised.sloping`."""
 
 BESIDE, ROUNDED = 0.1, 1e-12
-"""How far beside the straight line slopes are looked at once more, as a share of the sizes of states, and the share of
-a slope there below which one on the line is a zero that was rounded, as the sine of half a turn is."""
+"""Distance beside the straight line, relative to the states, at which derivatives are evaluated again; and derivative
+on the line, relative to that beside it, below which it counts as a rounded zero, such as the sine of half a turn."""
 
 NEGLIGIBLE = 1e-3
-"""A state this much smaller along the way than what it does to the others is scaled by the latter."""
+"""Ratio of a state to the magnitude implied by its effect on other states, below which the latter is used as its
+unit."""
 
 
 def two_point(instance: Instance, duration: float) -> TwoPoint:
-    """The scaled problem of an instance.
+    """Return the scaled problem of an instance.
 
     Parameters
     ----------
     duration
-        tf - t0; where it is free, a first guess.
+        Duration tf - t0; an initial guess if it is free.
     """
     final = final_argument(instance)
     start, end = np.array(instance.initial), _end(instance, final, duration)
@@ -39,7 +41,7 @@ def two_point(instance: Instance, duration: float) -> TwoPoint:
 
 
 def final_argument(instance: Instance) -> tuple[float, ...]:
-    """The ``final`` argument of the boundary functions."""
+    """Return the ``final`` argument of the boundary functions."""
     wanted = [instance.final.get(name) for name in instance.model.spec.state_names]
     on_reference = [float(value == "reference") for value in wanted]
     given = [float(value is not None and value != "reference") for value in wanted]
@@ -48,7 +50,7 @@ def final_argument(instance: Instance) -> tuple[float, ...]:
 
 
 def _end(instance: Instance, final: tuple[float, ...], duration: float) -> Array:
-    """Where the motion should end, as far as that is known; elsewhere the initial state."""
+    """Return the final states as far as they are known, and the initial states otherwise."""
     n = len(instance.initial)
     given, on_reference, target = (np.array(final[k * n : (k + 1) * n]) for k in range(3))
     end = np.where(given > 0, target, np.array(instance.initial))
@@ -59,13 +61,13 @@ def _end(instance: Instance, final: tuple[float, ...], duration: float) -> Array
 
 
 def straight(problem: TwoPoint) -> Array:
-    """The straight line's two ends in scaled states, shape (n, 2)."""
+    """Return both ends of the straight line in scaled states, shape (n, 2)."""
     end = _end(problem.instance, problem.final, problem.duration)
     return np.stack([problem.initial, end / problem.scale.state], axis=1)
 
 
 def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Scale:
-    """Sizes of the states along the straight line; the cost that makes the response to costates one."""
+    """Return units of the states, from the straight line, and the unit of cost with unit response to costates."""
     n, model = len(start), instance.model
     places = np.linspace(0.0, 1.0, POINTS)
     path, times = start[:, None] + (end - start)[:, None] * places, instance.t0 + duration * places

@@ -1,9 +1,9 @@
-"""Whether an extremal is a minimum: the number of directions in which the second variation is negative.
+"""Test whether an extremal is a minimum: the number of directions with negative second variation.
 
-Node by node, the states are eliminated from the quadratic form of the discretised second variation; its pivots
-are matrices between the fields of extremals from the left and through the right neighbour. A negative pivot
-before the end is a conjugate time (Jacobi); what is free at the end adds its own pivots. For costates that are
-the gradient of the cost to go, as here, the field from a fixed start gives the left part -Lambda X^-1.
+The states are eliminated node by node from the quadratic form of the discretised second variation; its pivots are
+matrices between the fields of extremals from the left and through the right neighbour. A negative pivot before the end
+is a conjugate time (Jacobi); free final states add their own pivots. For costates that are the gradient of the cost to
+go, as here, the field from a fixed start gives the left part -Lambda X^-1.
 """
 
 from __future__ import annotations
@@ -17,11 +17,12 @@ from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.problem import TwoPoint
 
 TIED, LOOSE = 1e-11, 1e-6
-"""Relative response of the states to the controls in a direction that counts as none, and the one it is then given."""
+"""Relative response of the states to the controls, in some direction, that counts as zero; and the response that
+replaces it."""
 
 
 def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> int:
-    """Number of negative eigenvalues of the discretised second variation; zero at a strict local minimum.
+    """Return the number of negative eigenvalues of the discretised second variation; 0 at a strict local minimum.
 
     Raises
     ------
@@ -40,7 +41,7 @@ def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> in
 
 
 def _counted(problem: TwoPoint, path: Path, matching: Matching, transition: Array) -> int:
-    """The number, if controls move states into all directions."""
+    """Return this number if the states are controllable in all directions."""
     n = problem.states
     # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
     slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])
@@ -54,7 +55,7 @@ def _counted(problem: TwoPoint, path: Path, matching: Matching, transition: Arra
 
 
 def _tied(problem: TwoPoint, matching: Matching) -> bool:
-    """Whether controls cannot move the states into all directions: something is conserved whatever they do."""
+    """Return whether the states are not controllable in all directions, because a quantity is conserved."""
     n, field = problem.states, np.eye(2 * problem.states)[:, problem.states :]
     for matrix in matching.transition:
         field = matrix @ field
@@ -64,7 +65,7 @@ def _tied(problem: TwoPoint, matching: Matching) -> bool:
 
 
 def _loosened(transition: Array) -> Array:
-    """Transitions with controls besides that move every state, and cost so much that they hardly do."""
+    """Return transition matrices with additional controls that move every state slightly, at a high cost."""
     n = transition.shape[1] // 2
     shear = np.repeat(np.eye(2 * n)[None], len(transition), axis=0)
     response = np.abs(transition[:, :n, n:]).max(axis=(1, 2))
@@ -73,7 +74,7 @@ def _loosened(transition: Array) -> Array:
 
 
 def _right_divided(a: Array, b: Array) -> Array:
-    """The matrix a b^-1."""
+    """Return the matrix a b^-1."""
     _, _, found, singular = lapack().dgesv(b.T, a.T)
     if singular:
         raise np.linalg.LinAlgError("singular")
@@ -81,7 +82,7 @@ def _right_divided(a: Array, b: Array) -> Array:
 
 
 def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
-    """Negative pivots of the final states that are free, within the terminal constraints."""
+    """Return the number of negative pivots of the free final states, within the terminal constraints."""
     n = problem.states
     free = np.flatnonzero(~problem.fixed)
     if not len(free):
@@ -98,7 +99,7 @@ def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
 
 
 def _of_the_duration(problem: TwoPoint, matching: Matching) -> int:
-    """One if the cost has a maximum in the duration: its second derivative along the extremals is negative."""
+    """Return 1 if the second derivative of the cost with respect to the free duration is negative, otherwise 0."""
     if not problem.free_time:
         return 0
     reduced = matching.reduced()
@@ -109,7 +110,7 @@ def _of_the_duration(problem: TwoPoint, matching: Matching) -> int:
 
 
 def _negative(matrices: Array) -> int:
-    """Negative eigenvalues of the symmetric parts, over a stack of matrices."""
+    """Return the number of negative eigenvalues of the symmetric parts of a stack of matrices."""
     if not matrices.size:
         return 0
     return int((np.linalg.eigvalsh(matrices + matrices.transpose(0, 2, 1)) < 0.0).sum())

@@ -1,13 +1,12 @@
-"""Newton's method made global by what lies behind the equations: a minimisation with constraints.
+"""Globalised Newton's method, which treats the collocation equations as conditions of a constrained minimisation.
 
-A curve of states and costates holds a control (through the control law) and multipliers, so a full Newton step
-on the canonical equations is a step of sequential quadratic programming. Hence steps are measured by an exact
-penalty function; where the second variation is not positive, the Newton step is no descent and the
-Gauss-Newton step is taken, whose quadratic programme is convex: the costates' own rates by the states are
-evaluated without costates. Where costs themselves are concave and that step is no descent either, their second
-derivatives are left out in the directions in which they are. A second-order correction keeps the penalty from
-refusing good steps.
-(Nocedal and Wright, Numerical Optimization, chapter 18.)
+A curve of states and costates implies a control (through the control law) and multipliers, so that a full Newton step
+on the canonical equations is a step of sequential quadratic programming. Steps are therefore measured by an exact
+penalty function. If the second variation is not positive, the Newton step is no descent direction and the Gauss-Newton
+step is taken, whose quadratic programme is convex: derivatives of the costates' rates with respect to the states are
+evaluated without costates. If costs are concave and this step is no descent direction either, the negative curvature of
+the costs is left out. A second-order correction prevents the penalty function from rejecting good steps (Nocedal and
+Wright, Numerical Optimization, chapter 18).
 """
 
 from __future__ import annotations
@@ -27,41 +26,43 @@ from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 
 CLOSE_STEP = 1e-3
-"""Below this size of a full Newton step, Newton's convergence needs no guarding."""
+"""Size of a full Newton step below which Newton's method converges without globalisation."""
 
 CUT = 0.2
-"""A Newton step that had to be cut below this share is followed by a Gauss-Newton step."""
+"""Fraction of a Newton step below which a shortened step is followed by a Gauss-Newton step."""
 
 FRACTIONS = (1.0, 0.8, 0.5, 0.0)
-"""Shares of the costates with which their own rates by the states are evaluated: the first for which the second
-variation is positive is taken. One is Newton, zero Gauss-Newton, whose quadratic programme is always convex."""
+"""Fractions of the costates with which derivatives of their rates by the states are evaluated. The first fraction with
+a positive second variation is used. 1 is Newton's method, 0 is Gauss-Newton, whose quadratic programme is always
+convex."""
 
 SHORTEST = 1e-6
 SUFFICIENT = 1e-4
 CORRECTED = 4
-"""Shares of a step that are tried with a second-order correction as well."""
+"""``SHORTEST`` is the smallest fraction of a step; ``SUFFICIENT`` the required part of the predicted decrease;
+``CORRECTED`` the number of fractions that are also tried with a second-order correction."""
 
 PROBE = 1e-6
-"""Step with which the slope of the cost along a direction is measured."""
+"""Step by which the derivative of the cost along a direction is computed."""
 
 
 def minimise(system: System, start: Curve, limits: Limits, tolerance: float, most: int) -> Attempt:
     """Minimise the cost from a curve without costates, over all curves that solve the problem.
 
-    A mesh that is too coarse has minima that the problem does not have, so the minimisation stops where the motion
-    turns by more than ``mesh.COARSEST`` in one interval.
+    A mesh that is too coarse has spurious minima, so the minimisation stops if the fastest mode turns by more than
+    ``mesh.COARSEST`` in one interval.
 
     Parameters
     ----------
     system
-        Collocation equations of a problem without bounds.
+        Collocation equations of a problem without control bounds.
     start
-        A curve on the system's mesh: a guess of the states without costates, or an extremal of a neighbouring
+        A curve on the system's mesh: an initial guess of the states without costates, or an extremal of a neighbouring
         problem.
     tolerance
-        Size of the last step.
+        Size of the last step at which the iteration has converged.
     most
-        Steps.
+        Maximum number of steps.
     """
     n, problem, curve = system.problem.states, system.problem, start
     residual, cost = system.residual(curve), system.cost(curve)
@@ -106,7 +107,7 @@ def minimise(system: System, start: Curve, limits: Limits, tolerance: float, mos
 
 @dataclass(frozen=True, eq=False)
 class _Merit:
-    """A curve from which a step is to be taken, and the exact penalty function by which it is measured."""
+    """A curve from which a step is taken, and the exact penalty function that measures the step."""
 
     system: System
     curve: Curve
@@ -118,16 +119,16 @@ class _Merit:
 
     @property
     def value(self) -> float:
-        """Value of the penalty function, at the curve."""
+        """Return the value of the penalty function at the curve."""
         return float(self.cost + self.penalty @ self.violated)
 
     def slope(self) -> float:
-        """Its derivative along the step."""
+        """Return the derivative of the penalty function along the step."""
         ahead = self.curve.moved(self.step, PROBE)
         return float((self.system.cost(ahead) - self.cost) / PROBE - self.penalty @ self.violated)
 
     def measured(self, curve: Curve, fraction: float, halved: bool) -> _Trial:
-        """Another curve, that after a share of the step."""
+        """Return the evaluation of another curve, reached by a fraction of the step."""
         residual = self.system.residual(curve)
         cost, violated = self.system.cost(curve), self.system.infeasibility(residual)
         value = float(cost + self.penalty @ violated)
@@ -136,28 +137,28 @@ class _Merit:
 
 @dataclass(frozen=True, eq=False)
 class _Trial:
-    """A curve after a share of a step."""
+    """A curve after a fraction of a step."""
 
     curve: Curve
     residual: Residual
     cost: float
     violated: Array
     value: float
-    """Value of the penalty function; infinite where it is not a number."""
+    """Value of the penalty function; infinite if it is not a number."""
     fraction: float
     halved: bool
-    """The share, and whether it is less than the first one."""
+    """Fraction of the step, and whether it was reduced."""
 
 
 def _searched(at: _Merit, fraction: float, whole: bool) -> _Trial | None:
-    """The curve after the largest share of the step that descends.
+    """Return the curve after the largest fraction of the step that decreases the penalty function, or ``None``.
 
     Parameters
     ----------
     fraction
-        Share of the step to begin with.
+        First fraction of the step that is tried.
     whole
-        Whether that is taken as it is.
+        Whether this fraction is accepted without a test.
     """
     slope, value, tried = 0.0 if whole else min(at.slope(), 0.0), at.value, 0
     while fraction >= SHORTEST:
@@ -175,7 +176,7 @@ def _searched(at: _Merit, fraction: float, whole: bool) -> _Trial | None:
 def _direction(
     system: System, curve: Curve, residual: Residual, jacobian: Array, avoid: bool, trusted: bool
 ) -> tuple[Linearised | None, bool]:
-    """The linearisation to step with, and whether it is Newton's."""
+    """Return the linearisation for the next step, or ``None``, and whether it is that of Newton's method."""
     n = system.problem.states
     without_costates = not curve.stages[n:].any()
     fractions = (0.0,) if without_costates else (1.0, 0.0) if trusted else FRACTIONS[int(avoid) :]
@@ -194,7 +195,7 @@ def _direction(
 
 
 def _without_costates(system: System, curve: Curve, jacobian: Array) -> Array:
-    """The Jacobian, but for the costates' own rates by the states: those without costates."""
+    """Return the Jacobian with the derivatives of the costates' rates by states evaluated without costates."""
     n, bare = system.problem.states, jacobian.copy()
     stages, nodes = curve.stages.copy(), curve.nodes.copy()
     stages[n:], nodes[n:] = 0.0, 0.0
@@ -203,7 +204,7 @@ def _without_costates(system: System, curve: Curve, jacobian: Array) -> Array:
 
 
 def _convexly(at: _Merit, residual: Residual, jacobian: Array) -> _Trial | None:
-    """The curve after a Gauss-Newton step with costs that are made convex, if that step descends."""
+    """Return the curve after a Gauss-Newton step with convexified costs if the step descends, otherwise ``None``."""
     system, curve, problem = at.system, at.curve, at.system.problem
     n, slopes = problem.states, _without_costates(system, curve, jacobian)
     slopes[n:, :n] = -_convex(-slopes[n:, :n].transpose(2, 0, 1)).transpose(1, 2, 0)
@@ -223,19 +224,19 @@ def _convexly(at: _Merit, residual: Residual, jacobian: Array) -> _Trial | None:
 
 
 def _convex(hessians: Array) -> Array:
-    """Symmetric matrices of a stack, shape (M, n, n), without their negative eigenvalues."""
+    """Return symmetric matrices of a stack, shape (M, n, n), with negative eigenvalues replaced by zero."""
     values, axes = np.linalg.eigh((hessians + hessians.transpose(0, 2, 1)) / 2.0)
     found: Array = (axes * np.maximum(values, 0.0)[:, None, :]) @ axes.transpose(0, 2, 1)
     return found
 
 
 def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:
-    """Whether an extremal is a minimum, and the equations by which that is judged: those next to it, if at hand.
+    """Return whether an extremal is a minimum, and the linearised equations by which this is judged.
 
     Parameters
     ----------
     sure
-        Whether these were found to be those of a minimum.
+        Whether these equations are known to be those of a minimum.
     """
     try:
         if near is None:
@@ -247,13 +248,13 @@ def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> 
 
 
 def _multipliers(curve: Curve, step: Step, n: int, count: int) -> Array:
-    """Largest multipliers after the full step: of each state's equation, then of the terminal constraints."""
+    """Return the largest multipliers after the full step: of each state's equation, then of terminal constraints."""
     costates = np.abs(curve.stages[n:] + step.stages[n:]).reshape(n, -1).max(axis=1)
     return np.concatenate([costates, np.abs(curve.theta + step.theta)[: count - n]])
 
 
 def _raised(penalty: Array, multipliers: Array) -> Array:
-    """Penalties above the multipliers, lowered again where they have become far too large."""
+    """Return penalties above the multipliers, reduced where they have become much too large."""
     found: Array = np.where(
         penalty < 1.1 * multipliers,
         2.0 * multipliers,
@@ -263,7 +264,7 @@ def _raised(penalty: Array, multipliers: Array) -> Array:
 
 
 def _corrected(at: _Merit, trial: _Trial) -> Curve | None:
-    """The trial after a second-order correction of the equations of motion; ``None`` outside the domain."""
+    """Return the trial after a second-order correction of the equations of motion; ``None`` outside the domain."""
     n = at.system.problem.states
     stages, ends = trial.residual.stages.copy(), trial.residual.ends.copy()
     stages[n:], ends[n:] = 0.0, 0.0

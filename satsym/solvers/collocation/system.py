@@ -1,4 +1,4 @@
-"""The collocation equations: residuals for all stages at once."""
+"""The collocation equations: residuals of all stages at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.solvers.control.jumps import Jump, Saltation
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """By how much the equations of a curve fail."""
+    """Residuals of the collocation equations of a curve."""
 
     stages: Array
     """Z - z_i - h A F(Z), shape (2n, N, s)."""
@@ -25,21 +25,21 @@ class Residual:
     """z_{i+1} minus the end of the interval's polynomial, shape (2n, N)."""
     start: Array
     finish: Array
-    """At the boundary, shapes (n,) and (n + e,)."""
+    """Residuals of the initial and final conditions, shapes (n,) and (n + e,)."""
     rates: Array
-    """A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time."""
+    """A F(Z), shape (2n, N, s): negative derivative of the stage residuals by the duration, without explicit time."""
     saltations: dict[int, Saltation] = field(default_factory=dict)
-    """Saltations at jumps of the law, by the intervals at whose ends these are."""
+    """Saltations at jumps of the control law, by the index of the interval that ends there."""
 
     @property
     def by_interval(self) -> Array:
-        """Minus the residuals of the stages, interval by interval, shape (N, s 2n)."""
+        """Return the negative residuals of the stages for each interval, shape (N, s 2n)."""
         found: Array = -self.stages.transpose(1, 2, 0).reshape(self.stages.shape[1], -1)
         return found
 
 
 class System:
-    """The collocation equations of a problem on a mesh, near nodes of which the law may jump."""
+    """The collocation equations of a problem on a mesh, with jumps of the control law near some nodes."""
 
     def __init__(self, problem: TwoPoint, mesh: Array, order: int, jumps: Sequence[Jump] = ()) -> None:
         self.problem, self.mesh, self.order, self.jumps = problem, mesh, order, jumps
@@ -50,22 +50,22 @@ class System:
 
     @cached_property
     def matrix(self) -> Array:
-        """The scheme's on every interval, each entry as often as there are rows, shape (N, s, s 2n)."""
+        """Return the scheme's matrix times each interval's length, entries repeated for all rows, (N, s, s 2n)."""
         found: Array = self.widths[:, None, None] * np.repeat(self.scheme.matrix, self.rows, axis=1)
         return found
 
     def cost(self, curve: Curve) -> float:
-        """The scaled cost J along a curve, under the control law of its stages."""
+        """Return the scaled cost J along a curve, under the control law at its stages."""
         return self._summed(curve, self.problem.running_cost(self.tau, curve.flat, curve.theta))
 
     def _summed(self, curve: Curve, running: Array) -> float:
-        """The cost of a curve, from the running cost at its stages, shape (N s,)."""
+        """Return the cost of a curve from the running cost at its stages, shape (N s,)."""
         problem, theta = self.problem, curve.theta
         integral = float((running.reshape(self.intervals, self.order) @ self.scheme.weights) @ self.widths)
         return problem.elapsed(theta) * integral + problem.terminal_cost(curve.nodes[:, -1], theta)
 
     def residual(self, curve: Curve) -> Residual:
-        """How far a curve is from a solution."""
+        """Return the residuals of the equations for a curve."""
         problem, theta = self.problem, curve.theta
         shape = (self.rows, self.intervals, self.order)
         rates = problem.rates(self.tau, curve.flat, theta).reshape(shape)
@@ -85,7 +85,7 @@ class System:
         )
 
     def _saltations(self, ends: Array, theta: Array) -> dict[int, Saltation]:
-        """Saltations at the jumps, by the intervals that end there; ``ends`` has shape (2n, N)."""
+        """Return the saltations at the jumps, by the interval that ends there; ``ends`` has shape (2n, N)."""
         found = {}
         for jump in self.jumps:
             k = int(np.abs(self.mesh[1:] - jump.time).argmin())
@@ -93,9 +93,9 @@ class System:
         return {k: one for k, one in found.items() if np.isfinite(one.matrix).all()}
 
     def infeasibility(self, residual: Residual) -> Array:
-        """Summed violation of what multipliers are for, shape (n + constraints,).
+        """Return the summed violation of the constraints that have multipliers, shape (n + constraints,).
 
-        First the equations of motion with the given ends, state by state; then the terminal constraints.
+        First the equations of motion and given ends, for each state; then the terminal constraints.
         """
         n, problem = self.problem.states, self.problem
         by_stage = np.abs(residual.stages[:n] @ self.scheme.inverse.T) @ self.scheme.weights
@@ -105,11 +105,11 @@ class System:
         return np.concatenate([by_stage.sum(axis=1) + ends, constraints])
 
     def jacobian(self, curve: Curve) -> Array:
-        """The rates by z at all stages, shape (2n, 2n, N s)."""
+        """Return the derivatives of the rates by z at all stages, shape (2n, 2n, N s)."""
         return self.problem.jacobian(self.tau, curve.flat, curve.theta)
 
     def largest_turn(self, curve: Curve, jacobian: Array) -> float:
-        """The largest angle that the fastest mode of the motion passes in one interval, in radians."""
+        """Return the largest angle, in rad, by which the fastest mode of the motion turns in one interval."""
         n = self.problem.states
         at_middles = jacobian[:n, :n, self.order // 2 :: self.order]
         speed = np.abs(np.linalg.eigvals(at_middles.transpose(2, 0, 1))).max(axis=1)
@@ -117,7 +117,7 @@ class System:
 
 
 def costs(along: Sequence[tuple[System, Curve]]) -> list[float]:
-    """Costs of several curves of one problem, asked for at once where no extra unknowns tell them apart."""
+    """Return the costs of several curves of one problem, evaluated together if the problem has no extra unknowns."""
     if not along or along[0][0].problem.unknowns:
         return [system.cost(curve) for system, curve in along]
     tau, z = (np.concatenate(rows, axis=-1) for rows in zip(*((s.tau, c.flat) for s, c in along), strict=True))

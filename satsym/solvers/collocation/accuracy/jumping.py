@@ -1,4 +1,4 @@
-"""Extremals along which the control law jumps: nodes that follow the jumps until both stand still."""
+"""Extremals with jumps of the control law: mesh nodes follow the jumps until nodes and jumps coincide."""
 
 from __future__ import annotations
 
@@ -17,23 +17,25 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.control.jumps import Jump, jumps
 
 SAMPLES, CLEAR_JUMP = 12, 1e-3
-"""Points in each interval between which jumps are looked for, and what is one, as a share of the largest control."""
+"""Number of points in each interval between which jumps are searched for, and the change of a control, relative to the
+largest control, that counts as a jump."""
 
 STILL, MOST_MOVES = 1e-12, 25
-"""Share of the horizon by which jumps still move that stand still, and times that nodes follow them."""
+"""Movement of jumps, as a fraction of the duration, below which they count as stationary; maximum number of
+movements."""
 
 ROUGHLY = 1e-4
-"""Change of a curve from which on Newton's method brings it to its end."""
+"""Relative size of a step below which Newton's method completes the iteration."""
 
 LARGEST_CHANGE = 0.5
-"""Relative change of a curve in one step."""
+"""Largest relative change of a curve in one step."""
 
 CLOSE_JUMPS = 1e-6
-"""Share of the horizon within which two jumps leave nothing between them."""
+"""Distance of two jumps, as a fraction of the duration, below which they are merged."""
 
 
 def found(problem: TwoPoint, curve: Path) -> list[Jump]:
-    """Where the law of a curve jumps, in order; none where each of its controls has one minimiser."""
+    """Return the jumps of a curve's control law in order; none if H has a single minimiser for every control."""
     if not problem.instance.model.spec.stationary:
         return []
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
@@ -47,16 +49,16 @@ def found(problem: TwoPoint, curve: Path) -> list[Jump]:
 
 
 def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt | None:
-    """The extremal near a curve, with nodes at its jumps and where bounds are met; ``None`` where none is found.
+    """Return the extremal near a curve, with nodes at its jumps and bound crossings; ``None`` if none is found.
 
-    Jumps follow each step of Newton's method: with nodes that stand still, it would see them move twice.
+    Nodes move after each Newton step: with fixed nodes, the method would account for the movement of jumps twice.
 
     Parameters
     ----------
     order
-        Stages.
+        Number of stages.
     count
-        Intervals, about.
+        Approximate number of intervals.
     """
     met, before, size = found(problem, curve), np.zeros(0), float("inf")
     for _ in range(MOST_MOVES):
@@ -81,7 +83,7 @@ def located(problem: TwoPoint, curve: Curve, order: int, count: int) -> Attempt 
 
 
 def _merged(met: list[Jump]) -> list[Jump]:
-    """Jumps less those with nothing between them: where a curve is torn at a node, its law may jump to and fro."""
+    """Return the jumps with coinciding ones merged; a gap of a curve at a node may make its law jump back and forth."""
     left: list[Jump] = []
     for jump in met:
         if left and jump.time - left[-1].time < CLOSE_JUMPS:
@@ -95,7 +97,7 @@ def _merged(met: list[Jump]) -> list[Jump]:
 
 
 def _stepped(system: System, curve: Curve) -> tuple[Curve, float] | None:
-    """The curve after a step of Newton's method, and how large the step was."""
+    """Return the curve after a Newton step, and the relative size of the step; ``None`` if the step fails."""
     residual = system.residual(curve)
     try:
         step = linearise(system, curve, residual, system.jacobian(curve)).step(residual)

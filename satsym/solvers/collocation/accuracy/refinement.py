@@ -1,4 +1,4 @@
-"""Accuracy: defect corrections on many points of each interval, and where these are not enough a finer mesh."""
+"""Accuracy of collocation: defect corrections on many points of each interval and, if necessary, finer meshes."""
 
 from __future__ import annotations
 
@@ -20,67 +20,70 @@ from satsym.solvers.control.breaks import find_breaks
 from satsym.solvers.control.jumps import Jump
 
 NEAR_CORRECTION = 1e-3
-"""Last correction of Newton's method from which defect corrections converge quickly."""
+"""Size of the last Newton correction below which defect corrections converge quickly."""
 
 AIM = 1e-3
-"""Share of the tolerance that is aimed at: errors of the initial costates grow a thousandfold and more on the way."""
+"""Error aimed at, relative to the tolerance: errors of the initial costates may grow more than a thousandfold."""
 
 FINEST = 1e-13
-"""What rounding allows."""
+"""Smallest error that rounding allows."""
 
 ROUNDS, MOST_INTERVALS, FEWEST, LARGEST_SPLIT = 8, 400, 0.6, 4.0
-"""Meshes that are tried, intervals of one, and bounds of the change of its density from one to the next."""
+"""Maximum number of meshes, maximum number of intervals of a mesh, and bounds of the factor by which the density of a
+mesh changes."""
 
 ROOM = 0.25
-"""Share of an interval by which a node may be moved to a corner; one that is farther from all nodes gets its own."""
+"""Largest distance, relative to an interval, by which a node is moved to a corner; a corner farther away gets its own
+node."""
 
 ROUGH = 1e-6
-"""What polynomials of low order may leave out for defect corrections to converge."""
+"""Largest truncation error of low-order polynomials for which defect corrections converge."""
 
 SPARE = 0.1
-"""Share of the error aimed at that the next mesh is laid for."""
+"""Error for which the next mesh is designed, relative to the error aimed at."""
 
 POINTS, MORE = 16, 24
-"""Points of each interval, at first and where polynomials through so many leave out too little for a finer mesh."""
+"""Numbers of points of each interval: at first, and if the truncation error is slightly too large for the first."""
 
 MOST_CORRECTIONS = 6
-"""Defect corrections of one solution, at most."""
+"""Maximum number of defect corrections of one solution."""
 
 CONTRACTION = 0.1
-"""Corrections that shrink less are not worth another."""
+"""Ratio of successive corrections above which no further correction is made."""
 
 ROUNDING = 3e-15
-"""Corrections of this size show nothing any more, and residuals of this size are none."""
+"""Size of corrections and residuals that consist of rounding."""
 
 ROUNDED_ERROR = 1e-14
-"""What is said of the error where Newton's method has brought its corrections down to rounding."""
+"""Error estimate of a solution whose Newton corrections have reached rounding."""
 
 FAINT_COSTATE = 1e-5
-"""Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
-"""
+"""Effect of costates on the states, relative to these, below which rounding makes the costates less accurate than
+others."""
 
 LITTLE = 1e-2
-"""Scaled costates above this are known as well as any others."""
+"""Magnitude of scaled costates above which all are equally accurate."""
 
 FAINTEST = 1e-6
-"""Scaled costates from which nobody need ask whether they do anything."""
+"""Magnitude of scaled costates above which it is not tested whether they have any effect."""
 
 
 def refine(
     problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool = False, known: Linearised | None = None
 ) -> Attempt:
-    """Refine a solution until the error is far below a tolerance; below it is enough if that is all one can get.
+    """Refine a solution until the error is well below a tolerance, or at least below it if no more is possible.
 
     Parameters
     ----------
     curve
-        A solution of collocation equations on some mesh.
+        A solution of collocation equations on a mesh.
     tolerance
-        Largest error.
+        Largest admissible error.
     keep_nodes
-        Whether nodes lie on corners: intervals are only split, and nodes follow the corners as these become accurate.
+        Whether nodes lie at corners: intervals are then only divided, and nodes follow the corners as accuracy grows.
     known
-        The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
+        The linearised equations at or near the curve, if it is a solution with :data:`STAGES` stages; otherwise
+        ``None``.
     """
     total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, FINEST)
     _, scheduled = find_breaks(problem.instance)
@@ -121,19 +124,19 @@ def refine(
 
 
 def _density(omitted: Array, aim: float, order: int) -> Array:
-    """Wanted intervals for each present one, from what its polynomials leave out."""
+    """Return the number of new intervals for each interval, from its truncation error."""
     found: Array = np.clip((omitted / aim) ** (1.0 / order), FEWEST, LARGEST_SPLIT)
     return found
 
 
 def _error(problem: TwoPoint, corrected: _Corrected, met: Array, jumps: list[Jump]) -> float:
-    """The estimated error, or what corners and jumps leave out that are off the nodes, if that is more."""
+    """Return the estimated error, or the error from corners and jumps between nodes if that is larger."""
     curve = corrected.curve
     return max(corrected.error, misplaced(problem, curve, met), _jumping_off(problem, curve, jumps))
 
 
 def _jumping_off(problem: TwoPoint, curve: Curve, jumps: list[Jump]) -> float:
-    """The error that jumps between the nodes cause: the change of the rates times the time to the nearest node."""
+    """Return the error caused by jumps between nodes: the change of rates times the time to the nearest node."""
     if not jumps:
         return 0.0
     met = np.array([jump.time for jump in jumps])
@@ -143,7 +146,7 @@ def _jumping_off(problem: TwoPoint, curve: Curve, jumps: list[Jump]) -> float:
 
 
 def _followed(mesh: Array, met: Array) -> Array:
-    """A mesh whose nodes have followed the corners, the others in proportion; far from all nodes they get their own."""
+    """Return a mesh whose nodes are moved to nearby corners, with new nodes at corners far from all nodes."""
     before, after, own = [0.0], [0.0], []
     for corner in met:
         k = int(np.abs(mesh - corner).argmin())
@@ -158,14 +161,14 @@ def _followed(mesh: Array, met: Array) -> Array:
 
 
 def _split(mesh: Array, density: Array) -> Array:
-    """Every interval in equal parts."""
+    """Return a mesh with every interval divided into equal parts."""
     parts = np.ceil(density - 0.05).astype(int)
     inner = [a + (b - a) * np.arange(k) / k for a, b, k in zip(mesh[:-1], mesh[1:], parts, strict=True)]
     return np.concatenate([*inner, mesh[-1:]])
 
 
 def _spread(mesh: Array, density: Array) -> Array:
-    """The errors equally distributed over a new mesh."""
+    """Return a new mesh over which the errors are equally distributed."""
     count = max(int(np.ceil(density.sum())), len(density) + 1)
     cumulated = np.concatenate([[0.0], np.cumsum(density)]) / density.sum()
     spread = np.interp(np.linspace(0.0, 1.0, count + 1), cumulated, mesh)
@@ -178,35 +181,35 @@ class _Corrected:
     """A curve after its defect corrections."""
 
     curve: Curve
-    """On the same mesh, with more stages."""
+    """Curve on the same mesh, with more stages."""
     error: float
-    """Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
-    out."""
+    """Estimated error, relative as in :meth:`Step.size`: the last correction or the truncation error, if that is
+    larger."""
     omitted: Array
-    """The latter interval by interval, shape (N,)."""
+    """Truncation error of each interval, shape (N,)."""
 
 
 def _correct_defects(curve: Curve, linearised: Linearised, tolerance: float, points: int = POINTS) -> _Corrected | None:
-    """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
+    """Correct a solution of collocation equations until its error is below a tolerance, as far as possible.
 
-    Gauss collocation with s stages is right to order 2s at the nodes, but between them its polynomials are right to
-    order s + 1 only. On more points of each interval the defect shows what they miss; how it travels to the end of
-    the interval, and on to all other nodes, is known from the linearisation at hand, whose fundamental matrices
-    X(tau) are inverted without a solve, being symplectic.
+    Gauss collocation with s stages has order 2s at the nodes, but between them its polynomials have only order s + 1.
+    On more points of each interval the defect shows their error; its propagation to the end of the interval and to all
+    other nodes follows from the linearisation, whose symplectic fundamental matrices X(tau) are inverted without
+    solving a system.
 
     Parameters
     ----------
     linearised
-        The linearised equations there or nearby, on the same mesh with the same stages.
+        Linearised equations at or near the solution, on the same mesh with the same stages.
     tolerance
-        Largest error.
+        Largest admissible error.
     points
-        Of each interval.
+        Number of points of each interval.
 
     Returns
     -------
     _Corrected or None
-        ``None`` where corrections are not finite or do not shrink.
+        ``None`` if corrections are not finite or do not decrease.
     """
     system = System(linearised.system.problem, curve.mesh, points, linearised.system.jumps)
     onto = interpolation(linearised.system.order, points)
@@ -239,10 +242,10 @@ def _correct_defects(curve: Curve, linearised: Linearised, tolerance: float, poi
 
 
 def _resolved(problem: TwoPoint, curve: Curve, rough: float) -> _Corrected | None:
-    """Correct a curve by Newton's method on all points, where polynomials of low order already leave out little.
+    """Correct a curve by Newton's method on all points, if low-order polynomials already represent it well.
 
-    On intervals that are long beside the decay of neighbouring extremals a linearisation of low order is worthless even
-    where hardly anything is left of these: it leads corrections nowhere, and more points still follow them.
+    On intervals that are long compared with the decay of neighbouring extremals, a low-order linearisation is useless
+    even if the truncation error is small: corrections from it do not converge, but more points resolve the decay.
     """
     if not _left_out(curve).max() < rough:
         return None
@@ -255,10 +258,10 @@ def _resolved(problem: TwoPoint, curve: Curve, rough: float) -> _Corrected | Non
 
 
 def _faint(linearised: Linearised) -> float:
-    """The size at which smaller scaled costates count: it moves the states by :data:`FAINT_COSTATE` of theirs.
+    """Return the minimum scale of small costates: it moves the states by :data:`FAINT_COSTATE` of their scale.
 
-    What the ends of the states ask of the costates, and how the rounding of states shows in these, is the same
-    response.
+    The costates that the end conditions require, and the effect of rounding of the states on costates, follow from the
+    same response.
     """
     problem = linearised.system.problem
     n, e = problem.states, problem.unknowns
@@ -271,9 +274,9 @@ def _faint(linearised: Linearised) -> float:
 
 
 def _without_rounding(system: System, curve: Curve) -> Curve:
-    """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs.
+    """Return the curve with costates without effect set to zero: if no control is needed, they are rounding noise.
 
-    They do nothing if the residual of the equations is the same without them, but for rounding.
+    They have no effect if the residual of the equations is the same without them, up to rounding.
     """
     n = len(curve.nodes) // 2
     if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= FAINTEST:
@@ -290,7 +293,7 @@ def _without_rounding(system: System, curve: Curve) -> Curve:
 def _correction(
     system: System, fine: Curve, linearised: Linearised, onto: Array, fundamental: Array, inverse: Array
 ) -> Step:
-    """What the defect on the fine points says, as a step."""
+    """Return the correction that the defect at the fine points implies, as a step."""
     residual, own = system.residual(fine), system.scheme
     defect = (residual.stages @ own.inverse.T).transpose(1, 2, 0)
     carried = (inverse @ defect[..., None])[..., 0]
@@ -303,7 +306,7 @@ def _correction(
 
 
 def _inverted(matrices: Array) -> Array:
-    """Inverses of symplectic matrices [[A, B], [C, D]]: [[D', -B'], [-C', A']]."""
+    """Return the inverses of symplectic matrices [[A, B], [C, D]]: [[D', -B'], [-C', A']]."""
     n = matrices.shape[-1] // 2
     transposed = matrices.swapaxes(-1, -2)
     found = np.empty_like(matrices)
@@ -313,7 +316,7 @@ def _inverted(matrices: Array) -> Array:
 
 
 def _left_out(curve: Curve, small: float = SMALL_COSTATE) -> Array:
-    """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
+    """Return the relative truncation error of each interval, shape (N,), from the last two Legendre coefficients."""
     n = len(curve.nodes) // 2
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
     last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
