@@ -1,1 +1,1 @@
-"""Inequalities on the state along the way: structures of contacts with boundaries, and exact arcs."""
+"""Path constraints on states and controls: sequences of boundary arcs and touch points, and exact arcs."""

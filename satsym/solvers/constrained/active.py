@@ -1,12 +1,13 @@
-"""Several constraints active at once: the control, the multipliers, and the field in which extremals move.
+"""Several constraints active at the same time: the control, the multipliers, and the rates of states and costates.
 
-Of one constraint these are derived and generated. Of several they follow from what is generated for each; beside a
-constraint on states only where H is quadratic in the controls. With W = H_uu and a row E_k of derivatives by the
-controls, of g_k where that holds a control and else of its last rate: those that hold controls push them by
--W^-1 E' eta off the minimum of H. On boundaries of constraints on states the last rates vanish under that control, and
-stay so: of multipliers that follow from the last rate's own rates, those of order one enter the first of these, and
-those of order two the second. Rates are derivatives along the extremal, by complex steps and, where these are not
-analytic any more, by differences.
+For one active constraint these are derived and generated. For several they follow from the generated functions of each;
+beside a constraint on states alone only if H is quadratic in the controls. Let W = H_uu, and let each row E_k be the
+derivative with respect to the controls of g_k if g_k involves the controls, else of its last time derivative (the first
+one that involves them). Active control constraints shift the controls by -W^-1 E' eta from the minimum of H. On
+boundaries of constraints on states the last time derivatives vanish under that control and stay zero: the multipliers
+follow from derivatives of these; those of constraints of order one appear in the first of them, those of order two in
+the second. Time derivatives along the extremal are taken by complex steps and, where these are no longer analytic, by
+differences.
 """
 
 from __future__ import annotations
@@ -27,27 +28,27 @@ from satsym.solvers.constrained.law import by_newton, stationary
 from satsym.solvers.constrained.structure import Active
 
 STEP = 1e-2
-"""Step of differences, relative to the time in which a state or a costate changes by its size."""
+"""Step of differences, relative to the time in which a state or a costate changes by its magnitude."""
 
 EIGHTH = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
-"""Weights of central differences of order eight."""
+"""Offsets and weights of central differences of order eight."""
 
 Rates = Callable[[NDArray[Any], NDArray[Any]], Array]
 
 
 def order(instance: Instance, constraint: int) -> int:
-    """The order of a constraint: how often it is differentiated until a control appears."""
+    """Return the order of a constraint: how often it is differentiated with respect to time until a control appears."""
     return instance.model.spec.path_constraints[constraint].order
 
 
 def analytic(instance: Instance, active: Active) -> bool:
-    """Whether complex steps may be taken through what is found here: where no complex step is taken within."""
+    """Return whether results for these active constraints are analytic, because no complex steps are used for them."""
     orders = {order(instance, k) for k in active}
     return len(active) < 2 or len(orders) == 1
 
 
 def control(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """Controls, shape (m, N): the minimum of H among those that keep what holds controls."""
+    """Return controls, shape (m, N), that minimise H among those that keep active control constraints."""
     held = tuple(k for k in active if order(instance, k) == 0)
     if len(held) < 2:
         return one_by_one.control(instance, held[0] if held else one_by_one.NONE, t, z)
@@ -55,7 +56,7 @@ def control(instance: Instance, active: Active, t: Array, z: Array) -> Array:
 
 
 def field(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """Rates of states and costates, shape (2n, N)."""
+    """Return the rates of states and costates, shape (2n, N), under active constraints."""
     if len(active) < 2:
         return one_by_one.field(instance, active[0] if active else one_by_one.NONE, t, z)
     if stationary(instance) and any(order(instance, k) for k in active):
@@ -65,21 +66,24 @@ def field(instance: Instance, active: Active, t: Array, z: Array) -> Array:
 
 
 def multipliers(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """eta of each that is active, shape (k, N)."""
+    """Return the multipliers eta of the active constraints, shape (k, N)."""
     if len(active) < 2:
         return np.array([one_by_one.multiplier(instance, k, t, z) for k in active]).reshape(len(active), len(t))
     return Together(instance, active, t, z).multipliers
 
 
 def vanishing(instance: Instance, active: Active, constraint: int, t: Array, z: Array) -> Array:
-    """What of a constraint on states vanishes besides while these are active, shape (q, N)."""
+    """Return the further quantities of a constraint that vanish while constraints are active, shape (q, N)."""
     if active == (constraint,):
         return one_by_one.vanishing(instance, constraint, t, z)
     return Together(instance, active, t, z).vanishing(constraint)
 
 
 def deciding(instance: Instance, active: Active, constraint: int, t: Array, z: Array) -> Array:
-    """What decides whether a constraint that holds a control is active, shape (N,): itself under the others alone."""
+    """Return the value of a control constraint under the other active constraints, shape (N,).
+
+    Its sign decides whether the constraint is active.
+    """
     others = tuple(k for k in active if k != constraint)
     x = z[: len(instance.initial)]
     return one_by_one.values(instance, t, x, control(instance, others, t, z))[constraint]
@@ -87,7 +91,7 @@ def deciding(instance: Instance, active: Active, constraint: int, t: Array, z: A
 
 @dataclass(frozen=True, eq=False)
 class Together:
-    """Several constraints at times (N,), with states and costates (2n, N)."""
+    """Several active constraints at times (N,), with states and costates (2n, N)."""
 
     instance: Instance
     active: Active
@@ -96,7 +100,7 @@ class Together:
 
     @property
     def n(self) -> int:
-        """States."""
+        """Return the number of states."""
         return len(self.instance.initial)
 
     def _of_order(self, *wanted: int) -> list[int]:
@@ -104,7 +108,7 @@ class Together:
 
     @cached_property
     def curvature(self) -> Array:
-        """H_uu, shape (N, m, m): differences of H_u, which is linear in the controls."""
+        """H_uu, shape (N, m, m), from differences of H_u, which is linear in the controls."""
         x, lam = self.z[: self.n], self.z[self.n :]
         model, m = self.instance.model, len(self.instance.model.spec.controls)
 
@@ -116,7 +120,7 @@ class Together:
         return np.moveaxis(np.array([slope(unit) - rest for unit in np.eye(m)]), -1, 0).swapaxes(1, 2)
 
     def effects(self, which: list[int]) -> Array:
-        """E of constraints, shape (N, k, m)."""
+        """Return the rows E of constraints, shape (N, k, m): derivatives of their last rates by the controls."""
         found, x, m = [], self.z[: self.n], len(self.instance.model.spec.controls)
         held = one_by_one.effects(self.instance, self.t, x, np.zeros((m, len(self.t))))
         rest = self._last_rates(which, np.zeros((m, len(self.t))))
@@ -126,7 +130,7 @@ class Together:
         return np.moveaxis(np.array(found), -1, 0)
 
     def _last_rates(self, which: list[int], u: Array) -> Array:
-        """The last rates of constraints under controls, shape (k, N); of what holds controls it is the constraint."""
+        """Return the last rates of constraints for given controls, (k, N); for control constraints their values."""
         x, model = self.z[: self.n], self.instance.model
         h = len(model.spec.path_constraints)
         rates = np.asarray(model.path_rates_batch(self.t, x, u, self.instance.parameters))
@@ -137,7 +141,7 @@ class Together:
 
     @cached_property
     def _holding(self) -> tuple[Array, Array]:
-        """The control, shape (m, N), and multipliers of what holds it, shape (k, N)."""
+        """Return the control, shape (m, N), and the multipliers of the active control constraints, shape (k, N)."""
         free = one_by_one.control(self.instance, one_by_one.NONE, self.t, self.z)
         which = self._of_order(0)
         if stationary(self.instance):
@@ -152,11 +156,11 @@ class Together:
 
     @property
     def control(self) -> Array:
-        """Shape (m, N)."""
+        """Return the control, shape (m, N)."""
         return self._holding[0]
 
     def along(self, eta: Array) -> Array:
-        """Rates of states and costates, shape (2n, N), with multipliers of all that are active, shape (k, N)."""
+        """Return rates of states and costates, (2n, N), with given multipliers of all active constraints, (k, N)."""
         model, p, u = self.instance.model, self.instance.parameters, self.control
         x, lam = self.z[: self.n], self.z[self.n :]
         push = one_by_one.gradients(self.instance, self.t, x, u)[list(self.active)]
@@ -166,7 +170,7 @@ class Together:
 
     @cached_property
     def multipliers(self) -> Array:
-        """eta of all that are active, shape (k, N)."""
+        """Multipliers eta of all active constraints, shape (k, N)."""
         if self._of_order(1, 2) and analytic(self.instance, self.active):
             return self._of_one_order
         found = dict(zip(self._of_order(0), self._holding[1], strict=True))
@@ -176,7 +180,7 @@ class Together:
 
     @property
     def _of_one_order(self) -> Array:
-        """Multipliers of constraints on states of one order: alone M_kk eta_k = -a_k, together M eta = -a."""
+        """Return multipliers of constraints on states of equal order: alone M_kk eta_k = -a_k, together M eta = -a."""
         effect = self.effects(list(self.active))
         gram = effect @ np.linalg.solve(self.curvature, effect.swapaxes(1, 2))
         alone = np.array([one_by_one.multiplier(self.instance, k, self.t, self.z) for k in self.active])
@@ -185,23 +189,23 @@ class Together:
 
     @cached_property
     def _partial(self) -> Array:
-        """Rates with the multipliers of what holds controls alone."""
+        """Rates with the multipliers of control constraints only."""
         return self.along(self._eta(self._holding[1], self._of_order(0)))
 
     def _eta(self, found: Array, which: list[int]) -> Array:
-        """Multipliers of some in a table of all, the others zero."""
+        """Return a table of the multipliers of all active constraints, with the given ones set and the others zero."""
         table = np.zeros((len(self.active), len(self.t)), np.result_type(found, float))
         table[[self.active.index(k) for k in which]] = found
         return table
 
     def _pushes(self, which: list[int]) -> list[Array]:
-        """Directions in which multipliers turn costates, shape (2n, N) each."""
+        """Return the directions in which multipliers change the costates, shape (2n, N) each."""
         push = one_by_one.gradients(self.instance, self.t, self.z[: self.n], self.control)
         return [np.concatenate([0.0 * push[k], -push[k]]) for k in which]
 
     @cached_property
     def _of_first_order(self) -> Array:
-        """Multipliers of constraints of order one: with them their rates stay as they are."""
+        """Multipliers of constraints of order one, for which the time derivatives of their last rates vanish."""
         if not (which := self._of_order(1)):
             return np.zeros((0, len(self.t)))
         rates = self._rates_of(which)
@@ -210,7 +214,7 @@ class Together:
         return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
 
     def _rates_of(self, which: list[int]) -> Rates:
-        """Last rates of some constraints at other places."""
+        """Return a function that gives the last rates of some constraints at other points."""
 
         def rates(t: NDArray[Any], z: NDArray[Any]) -> Array:
             there = Together(self.instance, self.active, t, z)
@@ -225,7 +229,7 @@ class Together:
         return self.along(self._eta(self._holding[1], self._of_order(0)) + first)
 
     def _next(self, which: list[int]) -> Array:
-        """Rates of the last rates of constraints of order two, shape (k, N)."""
+        """Return time derivatives of the last rates of constraints of order two, shape (k, N)."""
         if not self._of_order(0, 1) and set(which) <= set(self.active):
             known = [one_by_one.vanishing(self.instance, k, self.t, self.z)[1] for k in which]
             return np.array(known).reshape(len(which), len(self.t))
@@ -233,7 +237,7 @@ class Together:
 
     @cached_property
     def _of_second_order(self) -> Array:
-        """Multipliers of constraints of order two, with which the rates of their last rates stay as they are."""
+        """Multipliers of constraints of order two, for which the second time derivatives of their last rates vanish."""
         if not (which := self._of_order(2)):
             return np.zeros((0, len(self.t)))
 
@@ -245,19 +249,19 @@ class Together:
         return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
 
     def vanishing(self, constraint: int) -> Array:
-        """The last rate of a constraint on states, and of one of order two the rate of that, shape (q, N)."""
+        """Return the last rate of a constraint on states and, for order two, its time derivative, shape (q, N)."""
         last = self._last_rates([constraint], self.control)
         return last if order(self.instance, constraint) < 2 else np.concatenate([last, self._next([constraint])])
 
 
 def _derivative(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
-    """The derivative of rates along a direction, by a complex step."""
+    """Return the derivative of a function along a direction, by a complex step."""
     step = COMPLEX_STEP
     return np.imag(function(t + 1j * step * dt, z + 1j * step * dz)) / step
 
 
 def _difference(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
-    """The derivative of rates along a direction, by central differences."""
+    """Return the derivative of a function along a direction, by central differences."""
     n = len(z) // 2
     size = np.abs(z).max(axis=1, keepdims=True)
     for half in (slice(0, n), slice(n, 2 * n)):

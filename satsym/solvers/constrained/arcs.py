@@ -1,4 +1,4 @@
-"""What is unknown of an extremal with boundary arcs, all in one row: values on every arc, times and jumps."""
+"""The unknowns of an extremal with boundary arcs as one vector: values on all arcs, junction times and multipliers."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from satsym.solvers.constrained.law import by_newton, stationary
 from satsym.solvers.constrained.structure import FREE, Active, Junction, Structure
 
 NONE = -1
-"""In place of a constraint's number."""
+"""Stands for no active constraint in place of the index of a constraint."""
 
 OF_TERMS = 1e-3
-"""Share of its terms that a constraint is measured by where it is hardly ever off its boundary."""
+"""Minimum scale of a constraint, relative to its terms, for constraints that are almost always on their boundary."""
 
 DRAWN = 20
-"""States at which it is looked at on which of them a constraint depends."""
+"""Number of random states at which it is tested which states a constraint depends on."""
 
 
 def holds_control(instance: Instance, constraint: int) -> bool:
-    """Whether it is a constraint that holds a control; none is not."""
+    """Return whether a constraint involves the control directly (order zero); ``NONE`` does not."""
     return constraint != NONE and instance.model.spec.path_constraints[constraint].order == 0
 
 
 def control(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
-    """Controls, shape (m, N), on the boundary of a constraint or on none."""
+    """Return controls, shape (m, N), on the boundary of a constraint or, for ``NONE``, without one."""
     model, n, p = instance.model, len(instance.initial), instance.parameters
     if stationary(instance):
         return by_newton(instance, (constraint,) if holds_control(instance, constraint) else FREE, t, z)[0]
@@ -45,12 +45,12 @@ def control(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
 
 
 def without_bounds(instance: Instance) -> tuple[float, ...]:
-    """The argument ``bounds`` of the law without them; of a law that is found near one with them, that one's."""
+    """Return the argument ``bounds`` of the unbounded law, or of the bounded law if that is found iteratively."""
     return (instance.control_set if stationary(instance) else instance.control_set.without_bounds).arguments
 
 
 def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
-    """Rates of states and costates, shape (2n, N), on the boundary of a constraint or on none."""
+    """Return rates of states and costates, (2n, N), on the boundary of a constraint or, for ``NONE``, without one."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, lam = z[:n], z[n:]
     if constraint == NONE and not stationary(instance):
@@ -69,7 +69,7 @@ def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
 
 
 def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array | None = None) -> Array:
-    """What eta of a constraint is on its boundary, shape (N,), by the controls there where these are known."""
+    """Return the multiplier eta of a constraint on its boundary, shape (N,), from the controls if these are known."""
     model, n = instance.model, len(instance.initial)
     if stationary(instance) and holds_control(instance, constraint):
         return by_newton(instance, (constraint,), t, z)[1][0]
@@ -79,7 +79,7 @@ def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array
 
 
 def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
-    """What vanishes besides on the boundary, shape (q, N); of what holds a control that where it begins and ends."""
+    """Return the further quantities that vanish on a boundary, (q, N); for control constraints at its ends."""
     model, n = instance.model, len(instance.initial)
     u = control(instance, NONE, t, z)
     found = model.path_vanishing_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
@@ -88,9 +88,9 @@ def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
 
 
 def gradient(instance: Instance, constraint: int, t: Array, x: Array, u: Array | None = None) -> Array:
-    """g_x of one constraint, shape (n, N); of one on states alone without controls.
+    """Return g_x of one constraint, shape (n, N); constraints on states alone need no controls.
 
-    Conditions at points on the way are numbered after the constraints.
+    Conditions at waypoints have the indices after those of the constraints.
     """
     if (place := constraint - len(instance.model.spec.path_constraints)) >= 0:
         return np.asarray(instance.model.interior_gradient_batch(t, x, instance.parameters))[place]
@@ -99,7 +99,7 @@ def gradient(instance: Instance, constraint: int, t: Array, x: Array, u: Array |
 
 
 def gradients(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """g_x of all constraints, shape (h, n, N)."""
+    """Return g_x of all constraints, shape (h, n, N)."""
     if not instance.model.spec.path_constraints:
         return np.zeros((0, *x.shape))
     found = np.asarray(instance.model.path_gradient_batch(t, x, u, instance.parameters))
@@ -107,7 +107,7 @@ def gradients(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 
 
 def effects(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """g_u of all constraints, shape (h, m, N)."""
+    """Return g_u of all constraints, shape (h, m, N)."""
     if not instance.model.spec.path_constraints:
         return np.zeros((0, *u.shape))
     found = np.asarray(instance.model.path_effect_batch(t, x, u, instance.parameters))
@@ -115,7 +115,7 @@ def effects(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 
 
 def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """All constraints, shape (h, N); bounds that are infinite are kept as if by the size of one."""
+    """Return the values of all constraints, shape (h, N); infinite bounds count as satisfied with the slack 1."""
     if not instance.model.spec.path_constraints:
         return np.zeros((0, len(t)))
     found = instance.model.path_constraints_batch(t, x, u, instance.parameters, instance.control_set.arguments)
@@ -124,35 +124,35 @@ def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 
 
 def conditions(instance: Instance) -> list[range]:
-    """Numbers of the conditions at each point, after those of the path constraints."""
+    """Return the indices of the conditions at each waypoint, which follow those of the path constraints."""
     spec = instance.model.spec
     ends = np.cumsum([len(spec.path_constraints), *(point.conditions for point in spec.interior)]).tolist()
     return [range(a, b) for a, b in pairwise(ends)]
 
 
 def missed(instance: Instance, which: Sequence[int], t: Array, x: Array) -> tuple[Array, Array]:
-    """Conditions at points on the way, by their numbers after the constraints, and their rates by time, (k, N) each."""
+    """Return conditions at waypoints, by their indices, and their time derivatives, shape (k, N) each."""
     model, p, h = instance.model, instance.parameters, len(instance.model.spec.path_constraints)
     places = [k - h for k in which]
     return np.asarray(model.interior_batch(t, x, p))[places], np.asarray(model.interior_drift_batch(t, x, p))[places]
 
 
 def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """What each constraint is measured by, shape (h,): the largest it is, at least a share of its terms."""
+    """Return the scale of each constraint, shape (h,): its largest magnitude, at least a fraction of its terms."""
     found = np.maximum(np.abs(values(instance, t, x, u)), OF_TERMS * terms(instance, t, x, u))
     return np.asarray(np.maximum(found.max(axis=1), 1e-300))
 
 
 def terms(instance: Instance, t: Array, x: Array, u: Array) -> Array:
-    """What constraints add up from by states and controls, shape (h, N): rounding of these is nothing."""
+    """Return the sums of the magnitudes of the terms of constraints, shape (h, N), which set the scale of rounding."""
     push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
     return np.asarray(push + (np.abs(effects(instance, t, x, u)) * np.abs(u)).sum(axis=1))
 
 
 def depends(instance: Instance) -> NDArray[np.bool_]:
-    """On which states each constraint depends anywhere, shape (h, n); where nothing is known it may.
+    """Return which states each constraint depends on, shape (h, n).
 
-    Looked at where states are drawn: a derivative that vanishes at all of these vanishes everywhere.
+    A derivative that vanishes at all of several random states counts as zero; one that is not finite counts as nonzero.
     """
     rng, spec = np.random.default_rng(0), instance.model.spec
     magnitudes = 10.0 ** rng.uniform(-2.0, 2.0, (len(spec.states), DRAWN))
@@ -165,7 +165,7 @@ def depends(instance: Instance) -> NDArray[np.bool_]:
 
 
 def given_end(instance: Instance, end: float) -> Array:
-    """Final states (n,) that are given, or on the reference at the end; NaN elsewhere."""
+    """Return the final states (n,) that are given or on the reference at the final time; NaN for others."""
     found = np.full(len(instance.initial), np.nan)
     for i, name in enumerate(instance.model.spec.state_names):
         value = instance.final.get(name)
@@ -177,54 +177,54 @@ def given_end(instance: Instance, end: float) -> Array:
 
 
 def decided_at_end(instance: Instance) -> NDArray[np.bool_]:
-    """Which constraints on states given final states decide at the end, shape (h,)."""
+    """Return whether given final states alone determine each constraint on states at the final time, shape (h,)."""
     free = np.isnan(given_end(instance, instance.t0 + 1.0 if instance.tf is None else instance.tf))
     orders = np.array([one.order for one in instance.model.spec.path_constraints])
     return np.asarray((orders > 0) & ~(depends(instance) & free).any(axis=1))
 
 
 def _row(found: Array, constraints: int, columns: int) -> Array:
-    """A table of several entries for each constraint, shape (h, entries, N)."""
+    """Return generated values that have several entries for each constraint as an array of shape (h, entries, N)."""
     table = found.reshape(constraints, -1, found.shape[-1])
     return np.broadcast_to(table, (*table.shape[:2], columns))
 
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """Unknowns of a structure's problem, all in one row, and what they stand for."""
+    """The unknowns of the problem of a structure of arcs, as one vector, and their meaning."""
 
     instance: Instance
     structure: Structure
     intervals: tuple[int, ...]
-    """Intervals of each arc."""
+    """Number of intervals of each arc."""
     unknown: Array
     passed: tuple[tuple[float, float], ...] = ()
-    """Cost, and the size of a step or how far conditions were from holding, one by one on the way here."""
+    """Pairs of the cost and the size of a step or residual, one for each iteration so far."""
 
     @property
     def n(self) -> int:
-        """States."""
+        """Return the number of states."""
         return len(self.instance.initial)
 
     @cached_property
     def junctions(self) -> list[Junction]:
-        """Where arcs meet."""
+        """Junctions of the arcs."""
         return self.structure.junctions(self.instance)
 
     @cached_property
     def places(self) -> list[int]:
-        """Where each arc begins in the row, and where the last one ends."""
+        """Positions in the vector at which each arc begins, and at which the last one ends."""
         sizes = [(k * (STAGES + 1) + 1) * 2 * self.n for k in self.intervals]
         return [0, *np.cumsum(sizes).tolist()]
 
     @cached_property
     def active(self) -> list[Active]:
-        """What is active on each arc."""
+        """Active constraints on each arc."""
         return self.structure.arcs(self.instance)
 
     @cached_property
     def rest(self) -> Rest:
-        """Where the other unknowns stand."""
+        """Positions of the other unknowns."""
         first, count = self.places[-1], len(self.junctions)
         jumps = [(k, which) for k, one in enumerate(self.junctions) for which, _ in one.jumps]
         c = len(self.instance.model.spec.multipliers)
@@ -241,56 +241,56 @@ class Arcs:
 
     @cached_property
     def pinned(self) -> Active:
-        """Constraints active at the end that given final states keep there by themselves."""
+        """Constraints active at the final time whose values are determined by given final states alone."""
         given = np.array(final_argument(self.instance)).reshape(3, -1)[:2].sum(axis=0)
         states = [k for k in self.structure.ended if not holds_control(self.instance, k)]
         return tuple(k for k in states if not (depends(self.instance)[k] & (given == 0.0)).any())
 
     @property
     def pressed(self) -> Active:
-        """Constraints that push at the end."""
+        """Return the constraints that have a multiplier at the final time."""
         states = (k for k in self.structure.ended if not holds_control(self.instance, k))
         return tuple(k for k in states if k not in self.pinned)
 
     def pressure(self, constraint: int) -> float:
-        """The multiplier with which a constraint pushes at the end."""
+        """Return the multiplier of a constraint at the final time, 0 if it has none."""
         place = self.rest.nu + self.rest.constraints
         return float(self.unknown[place + self.pressed.index(constraint)]) if constraint in self.pressed else 0.0
 
     def nodes(self, arc: int) -> Array:
-        """Values at beginnings of intervals with those at their stages, and at the end: (K (stages + 1) + 1, 2n)."""
+        """Return values at beginnings of intervals, at their stages and at the end: (K (stages + 1) + 1, 2n)."""
         return self.unknown[self.places[arc] : self.places[arc + 1]].reshape(-1, 2 * self.n)
 
     def node(self, arc: int, place: int) -> Array:
-        """The first or the last value of an arc."""
+        """Return the first or the last value of an arc."""
         return self.nodes(arc)[place]
 
     @property
     def end(self) -> float:
-        """The final time."""
+        """Return the final time."""
         if self.instance.tf is not None:
             return self.instance.tf
         return float(self.unknown[self.places[-1] + len(self.junctions)])
 
     @property
     def times(self) -> Array:
-        """Times of the start, the junctions and the end."""
+        """Return the initial time, the junction times and the final time."""
         first = self.places[-1]
         return np.concatenate([[self.instance.t0], self.unknown[first : first + len(self.junctions)], [self.end]])
 
     def jump(self, junction: int, constraint: int) -> float:
-        """Multiplier of the jump there along the gradient of a constraint."""
+        """Return the multiplier of the jump at a junction along the gradient of a constraint, 0 without such a jump."""
         place = self.rest.jumps.get((junction, constraint))
         return 0.0 if place is None else float(self.unknown[place])
 
     def stages(self, arc: int) -> tuple[Array, Array]:
-        """Times (K, stages) and values (K, stages, 2n) of an arc."""
+        """Return times (K, stages) and values (K, stages, 2n) at the stages of an arc."""
         k, (a, b) = self.intervals[arc], self.times[arc : arc + 2]
         places = (np.arange(k)[:, None] + scheme(STAGES).nodes) / k
         return a + (b - a) * places, self.nodes(arc)[:-1].reshape(k, STAGES + 1, -1)[:, 1:]
 
     def at(self, arc: int, times: Array) -> Array:
-        """Values (2n, N) on an arc by its polynomials."""
+        """Return values (2n, N) on an arc from its polynomials."""
         k, (a, b) = self.intervals[arc], self.times[arc : arc + 2]
         share = np.clip((times - a) / (b - a if b != a else np.inf) * k, 0.0, k)
         which = np.minimum(share.astype(int), k - 1)
@@ -300,26 +300,26 @@ class Arcs:
 
 @dataclass(frozen=True)
 class Rest:
-    """Places of what is unknown besides the values on arcs."""
+    """Positions of the unknowns other than the values on arcs."""
 
     times: int
-    """Where the time of the first junction is."""
+    """Position of the first junction time."""
     end: int | None
-    """Where a free final time is."""
+    """Position of a free final time, otherwise ``None``."""
     jumps: dict[tuple[int, int], int]
-    """By junction and constraint."""
+    """Positions of the multipliers of jumps, by junction and constraint."""
     nu: int
-    """Where the first multiplier of terminal constraints is."""
+    """Position of the first multiplier of terminal constraints."""
     constraints: int
     pressed: int
-    """Multipliers at the end that follow them."""
+    """Number of multipliers of path constraints at the final time, which follow those of terminal constraints."""
 
     @property
     def size(self) -> int:
-        """Length of the whole row."""
+        """Return the length of the whole vector."""
         return self.nu + self.constraints + self.pressed
 
     def bounds(self, arc: int, count: int) -> tuple[int | None, int | None]:
-        """Places of the times at which an arc of so many begins and ends; ``None`` where these are given."""
+        """Return positions of the begin and end times of an arc, by the number of arcs; ``None`` for given times."""
         first = None if arc == 0 else self.times + arc - 1
         return first, self.end if arc == count - 1 else self.times + arc

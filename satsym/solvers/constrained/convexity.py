@@ -1,7 +1,7 @@
-"""Whether a problem is convex, so that an extremal is the one global minimum.
+"""Test whether a problem is convex, so that an extremal is the unique global minimum.
 
-The motion is linear, costs and constraints are quadratic with weights that do not depend on time, as was proved when
-they were derived; left to look at are the signs of the second derivatives, which depend on the parameters.
+Linear dynamics, and quadratic costs and constraints with constant weights, were established when the model was derived;
+the signs of the second derivatives, which depend on the parameters, remain to be tested.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.arcs import effects, gradients
 
 ROUNDING = 1e-12
-"""Share of the largest eigenvalue by which the least may be negative."""
+"""Largest magnitude of a negative eigenvalue, relative to the largest eigenvalue, that counts as rounding."""
 
 
 def convex(instance: Instance) -> bool:
-    """Whether it is; what is not of that form, or ends at a free time, is not.
+    """Return whether an instance is convex; ``False`` if it is not of linear-quadratic form or its final time is free.
 
-    Second derivatives of such problems are the same everywhere, so that they are taken at the start.
+    Second derivatives of such problems are constant, so that they are evaluated at the initial state.
     """
     spec = instance.model.spec
     kinds = {spec.control_set, *(part.kind for part in spec.control_parts)}
@@ -54,7 +54,7 @@ def convex(instance: Instance) -> bool:
 
 
 def _second(slopes: object, at: Array) -> Array:
-    """Derivatives of slopes by their argument, shape (N, d, d)."""
+    """Return derivatives of a gradient with respect to its argument, shape (N, d, d)."""
     columns = []
     for j in range(len(at)):
         moved = at.astype(complex)

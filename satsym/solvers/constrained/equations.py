@@ -1,4 +1,4 @@
-"""The multi-point problem of a structure: Gauss collocation on every arc, and what holds where arcs meet."""
+"""The multi-point boundary value problem of a structure: Gauss collocation on each arc, and junction conditions."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 
 DIFFERENCE = 1e-6
-"""Relative step of derivatives that need not be exact: only Newton's steps depend on them."""
+"""Relative step of derivatives that need not be exact, because only Newton's steps depend on them."""
 
 
 class System:
-    """Residuals of all conditions with their derivatives, or without."""
+    """Residuals of all equations, optionally with their derivatives."""
 
     def __init__(self, arcs: Arcs, sloped: bool = True) -> None:
         self.arcs, self.sloped = arcs, sloped
@@ -45,12 +45,12 @@ class System:
 
     @property
     def residual(self) -> Array:
-        """All equations, as one vector that is zero at a solution."""
+        """Return all equations as one vector, which is zero at a solution."""
         return np.concatenate(self.residuals)
 
     @property
     def jacobian(self) -> csc_matrix:
-        """The derivatives of all equations by all unknowns."""
+        """Return the derivatives of all equations with respect to all unknowns."""
         from scipy.sparse import csc_matrix
 
         places = np.concatenate(self.rows), np.concatenate(self.columns)
@@ -62,7 +62,7 @@ class System:
             kept.append(part.ravel())
 
     def _collocation(self, arc: int) -> None:
-        """z_i - z_0 - h sum a_ij f_j at the stages, and the step to the next node."""
+        """Add z_i - z_0 - h sum a_ij f_j at the stages, and the step to the next node."""
         arcs, d, k = self.arcs, 2 * self.arcs.n, self.arcs.intervals[arc]
         active, gauss = arcs.active[arc], scheme(STAGES)
         a, b = arcs.times[arc : arc + 2]
@@ -97,7 +97,7 @@ class System:
         self.height += rows.size
 
     def _start(self) -> None:
-        """Given states; what is held where the first arc is on a boundary."""
+        """Add given initial states, and conditions of a boundary on which the first arc lies."""
         arcs, n = self.arcs, self.arcs.n
         self.residuals.append(arcs.node(0, 0)[:n] - np.array(arcs.instance.initial))
         self._add(self.height + np.arange(n), np.arange(n), 1.0)
@@ -108,7 +108,7 @@ class System:
             self._conditions(what, list(range(2 * n)), analytic(arcs.instance, begun))
 
     def _junction(self, k: int, junction: Junction) -> None:
-        """States continue, costates jump; tangency, and what is held on boundaries after it."""
+        """Add continuity of states, jumps of costates, tangency, and conditions of the boundaries after a junction."""
         arcs, d = self.arcs, 2 * self.arcs.n
         before, after = arcs.places[k + 1] - d, arcs.places[k + 1]
         time, jumps = arcs.rest.times + k, [arcs.rest.jumps[k, which] for which, _ in junction.jumps]
@@ -117,7 +117,7 @@ class System:
         self._conditions(partial(_met, arcs, junction), columns, exact)
 
     def _end(self) -> None:
-        """The boundary residuals; where constraints push at the end, with costates after their jumps."""
+        """Add the final conditions, with costates after jumps caused by constraints at the final time."""
         arcs, one, n, d = self.arcs, self.arcs.instance, self.arcs.n, 2 * self.arcs.n
         rest, last = arcs.rest, arcs.places[-1] - d
         free = [] if rest.end is None else [rest.end]
@@ -139,7 +139,7 @@ class System:
         self._conditions(conditions, columns)
 
     def _conditions(self, conditions: Callable[[Array], Array], columns: Sequence[int], exact: bool = True) -> None:
-        """Conditions on a few unknowns, each a row of one column, by complex steps or differences."""
+        """Add conditions on a few unknowns, differentiated by complex steps or differences."""
         here = self.arcs.unknown[list(columns)]
         value = np.real(conditions(here[:, None])[:, 0])
         self.residuals.append(value)
@@ -151,7 +151,7 @@ class System:
 
 
 def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
-    """What vanishes at a junction: of states and costates before and after it, its time, and its multipliers."""
+    """Return the quantities that vanish at a junction, from values before and after it, its time and multipliers."""
     instance, n, d, constraint = arcs.instance, arcs.n, 2 * arcs.n, junction.constraint
     left, right, t = v[:d], v[d : 2 * d], v[2 * d]
     gap = right - left
@@ -175,7 +175,7 @@ def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
 
 
 def _passed(arcs: Arcs, junction: Junction, v: Array) -> list[NDArray[Any]]:
-    """What vanishes where a point on the way is passed: its conditions, and the derivative of the cost by its time.
+    """Return the quantities that vanish at a waypoint: its conditions, and the derivative of the cost by its time.
 
     The derivative is H(t-) - H(t+) + pi' N_t.
     """
@@ -189,15 +189,15 @@ def _passed(arcs: Arcs, junction: Junction, v: Array) -> list[NDArray[Any]]:
 
 
 def hamiltonian(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """H under the control of an arc, shape (N,)."""
+    """Return H under the control of an arc, shape (N,)."""
     n, u = len(instance.initial), control(instance, active, t, z)
     return np.asarray(instance.model.hamiltonian_batch(t, z[:n], u, z[n:], instance.parameters))
 
 
 def at_end(instance: Instance, active: Active, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:
-    """The boundary residuals, that of a free final time last, after an arc on boundaries or on none.
+    """Return the boundary residuals after an arc on boundaries or without one, with the final-time condition last.
 
-    In that one H stands under the control of that arc.
+    In the final-time condition, H is evaluated under the control of this arc.
     """
     model, n, p, bounds = instance.model, len(instance.initial), instance.parameters, without_bounds(instance)
     x, lam = z[:n], z[n:]
@@ -210,7 +210,7 @@ def at_end(instance: Instance, active: Active, t: Array, z: Array, nu: tuple[Any
 
 
 def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
-    """g, and its first rate where the order is two, shape (q, 1)."""
+    """Return g and, for order two, its first time derivative, shape (q, 1)."""
     model, p = instance.model, instance.parameters
     rest = np.zeros((len(model.spec.controls), 1))
     found = [values(instance, t, x, rest)[constraint]]
@@ -222,14 +222,14 @@ def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
 def _derivatives(
     rates: Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]], t: Array, z: Array, exact: bool
 ) -> tuple[Array, Array]:
-    """Derivatives of a field by the values, shape (2n, 2n, N), and by time."""
+    """Return derivatives of a field with respect to its values, shape (2n, 2n, N), and to time."""
     both = np.concatenate([z, t[None]])
     slopes = _slopes(lambda v: rates(v[-1], v[:-1]), both, exact)
     return slopes[:, :-1], slopes[:, -1]
 
 
 def _slopes(function: Callable[[NDArray[Any]], NDArray[Any]], at: Array, exact: bool) -> Array:
-    """Derivatives by each row, shape (rows, d, N): by complex steps, or else by central differences."""
+    """Return derivatives with respect to each component, (rows, d, N), by complex steps or central differences."""
     columns = []
     for j in range(len(at)):
         unit = np.zeros((len(at), 1))

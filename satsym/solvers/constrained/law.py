@@ -1,7 +1,7 @@
-"""Controls where H is not known to be quadratic in them: at which H_u vanishes, or that of H with active constraints.
+"""Controls of models without closed control law: zeros of H_u, or of the derivative of H plus active constraints.
 
-The law of the model, with its bounds, is where Newton's steps begin: it says which of several local minima is meant.
-Bounds are constraints that hold a control like others, so that beyond them the controls go on as if there were none.
+The bounded law of the model is the start of Newton's method: it selects one of several local minima. Bounds are treated
+as control constraints like others, so that without them the controls are continued as if unbounded.
 """
 
 from __future__ import annotations
@@ -17,20 +17,21 @@ from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.structure import Active
 
 STEPS, LAST_STEP = 30, 1e-13
-"""Newton's steps at most, and the size of one after which another is the last, relative to one plus the control's."""
+"""Maximum number of Newton steps, and the size of a step, relative to 1 plus the control, below which the iteration
+ends."""
 
 
 def stationary(instance: Instance) -> bool:
-    """Whether the model states no law on boundaries, so that it has to be found."""
+    """Return whether the model has no closed control law on boundaries, so that controls are found iteratively."""
     return bool(instance.model.spec.control_parts)
 
 
 def by_newton(
     instance: Instance, active: Active, t: NDArray[Any], z: NDArray[Any]
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Controls, shape (m, N), and multipliers, shape (k, N), of active constraints that hold controls.
+    """Return controls, shape (m, N), and multipliers, shape (k, N), of active control constraints.
 
-    Times and values may be complex by a small step: then controls are exact to first order in it.
+    Times and values may have complex steps; controls are then exact to first order in these.
     """
     spec, n = instance.model.spec, len(instance.initial)
     m, count = len(spec.controls), len(t)
@@ -53,7 +54,7 @@ def by_newton(
 
 
 def smallest_curvature(instance: Instance, active: Active, t: Array, z: Array) -> float:
-    """Least eigenvalue of H_uu, or that of H with active constraints along what keeps these; infinite where none is."""
+    """Return the smallest eigenvalue of H_uu, or of its form on active constraints; infinite if none is left."""
     m = len(instance.model.spec.controls)
     bordered = _slopes(instance, active, t, z, np.concatenate(by_newton(instance, active, t, z)))
     table = bordered[:, :m, :m]
@@ -64,7 +65,7 @@ def smallest_curvature(instance: Instance, active: Active, t: Array, z: Array) -
 
 
 def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[Any], w: NDArray[Any]) -> NDArray[Any]:
-    """H_u + mu' g_u and g, shape (m + k, N)."""
+    """Return H_u + mu' g_u and g, shape (m + k, N)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, h = z[:n], w[:m], len(model.spec.path_constraints)
     slope = np.broadcast_to(np.asarray(model.stationarity_batch(t, x, u, z[n:], p)), (m, len(t)))
@@ -74,7 +75,7 @@ def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[
 
 
 def _slopes(instance: Instance, active: Active, t: Array, z: Array, w: Array) -> Array:
-    """Derivatives of the conditions by controls and multipliers, shape (N, m + k, m + k)."""
+    """Return derivatives of the conditions by controls and multipliers, shape (N, m + k, m + k)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, count = z[:n], w[:m], len(t)
     found = np.zeros((len(w), len(w), count))
@@ -90,14 +91,14 @@ def _slopes(instance: Instance, active: Active, t: Array, z: Array, w: Array) ->
 
 
 def _effects(instance: Instance, active: Active, t: NDArray[Any], x: NDArray[Any], u: NDArray[Any]) -> NDArray[Any]:
-    """g_u of active constraints, shape (k, m, N)."""
+    """Return g_u of active constraints, shape (k, m, N)."""
     m, h = len(u), len(instance.model.spec.path_constraints)
     found = np.asarray(instance.model.path_effect_batch(t, x, u, instance.parameters))
     return np.broadcast_to(found.reshape(h, m, -1), (h, m, len(t)))[list(active)]
 
 
 def _solved(slopes: Array, residual: NDArray[Any]) -> NDArray[Any]:
-    """Newton's step, shape of the residual; no number where it is not determined."""
+    """Return the Newton step, in the shape of the residual; NaN if the system is singular."""
     try:
         return np.asarray(np.linalg.solve(slopes, residual.T[..., None])[..., 0].T)
     except np.linalg.LinAlgError:

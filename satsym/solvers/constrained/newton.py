@@ -1,4 +1,4 @@
-"""Newton's method on the multi-point problem of a structure, and meshes on which its answer no longer changes."""
+"""Newton's method for the multi-point problem of a structure, on meshes refined until the solution converges."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
 ACCURATE = 1e-12
-"""Size of Newton's step at which it ends, relative to the sizes of what is unknown."""
+"""Size of a Newton step, relative to the scales of the unknowns, at which the iteration has converged."""
 
 SETTLED_SOLUTION = 1e-10
-"""Change of times, cost and initial costates from one mesh to the next that is none."""
+"""Relative change of times, cost and initial costates between two meshes at which refinement ends."""
 
 ONCE, SEPARATION = 1e-4, 5e-3
-"""Shares of the duration: below which junctions come at once in a guess, and by which they are moved apart then."""
+"""Fraction of the duration below which two junctions of an initial guess coincide, and by which they are then
+separated."""
 
 ITERATIONS, HALVINGS = 25, 6
 DENSITY, MESHES = 24, 4
-"""Intervals over the whole duration at first, and how often they are doubled."""
+"""Number of intervals over the whole duration at first, and maximum number of times that it is doubled."""
 
 
 def begun(instance: Instance, structure: Structure, near: tuple[Array, Array, Array], end: float) -> Arcs:
-    """The unknowns of a structure from a path: times (N,), values (2n, N) at these, and multipliers at the end."""
+    """Return initial unknowns of a structure from times (N,), values (2n, N) there, and terminal multipliers."""
     times, table, nu = near
     junctions = structure.junctions(instance)
     inner = _apart([one.time for one in junctions], end - instance.t0)
@@ -58,7 +59,7 @@ def begun(instance: Instance, structure: Structure, near: tuple[Array, Array, Ar
 
 
 def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
-    """The extremal of a structure, on meshes that are doubled until times and cost settle; ``None`` without one."""
+    """Return the extremal of a structure, on meshes doubled until times and cost converge, or ``None``."""
     found = converged(arcs, limits)
     for _ in range(MESHES):
         if found is None:
@@ -71,7 +72,7 @@ def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
 
 
 def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
-    """The unknowns of another structure from the extremal of one."""
+    """Return initial unknowns of another structure from the extremal of a given one."""
     tables = [arcs.stages(k) for k in range(len(arcs.intervals))]
     times = np.concatenate([t.ravel() for t, _ in tables])
     rows = np.concatenate([z.reshape(-1, 2 * arcs.n) for _, z in tables]).T
@@ -83,12 +84,12 @@ def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
 
 
 def _at_once(one: float, other: float, lasting: float) -> bool:
-    """Whether two junctions come at once in a guess."""
+    """Return whether two junctions of an initial guess coincide."""
     return other - one < ONCE * lasting
 
 
 def _apart(times: list[float], lasting: float) -> list[float]:
-    """Times in order, those that coincide moved apart: an arc of no length says nothing about where it ends."""
+    """Return times in order, with coinciding ones separated, since an arc of no length does not determine its end."""
     groups: list[list[float]] = []
     for time in times:
         if groups and _at_once(groups[-1][-1], time, lasting):
@@ -103,7 +104,7 @@ def _apart(times: list[float], lasting: float) -> list[float]:
 
 
 def cost(arcs: Arcs) -> float:
-    """The running cost by Gauss's rule, and the terminal cost."""
+    """Return the cost: the running cost by Gauss quadrature plus the terminal cost."""
     one, n, total = arcs.instance, arcs.n, 0.0
     for arc, k in enumerate(arcs.intervals):
         t, z = arcs.stages(arc)[0].ravel(), arcs.stages(arc)[1].reshape(-1, 2 * n).T
@@ -116,19 +117,19 @@ def cost(arcs: Arcs) -> float:
 
 
 def _cost_or_none(arcs: Arcs) -> float:
-    """The cost on the way to an extremal; NaN where numbers fail."""
+    """Return the cost during an iteration; NaN if it cannot be computed."""
     found = tried(lambda: cost(arcs))
     return float("nan") if found is None else found
 
 
 def _places(intervals: int) -> Array:
-    """Shares of an arc at which there are values."""
+    """Return the fractions of an arc at which values are stored."""
     own = np.concatenate([[0.0], scheme(STAGES).nodes])
     return np.append(((np.arange(intervals)[:, None] + own) / intervals).ravel(), 1.0)
 
 
 def converged(arcs: Arcs, limits: Limits) -> Arcs | None:
-    """Newton's method, its steps halved until the next simplified one is shorter."""
+    """Return the solution by Newton's method, with steps halved until simplified steps decrease; else ``None``."""
     from scipy.sparse.linalg import splu
 
     for _ in range(ITERATIONS):
@@ -161,7 +162,7 @@ def converged(arcs: Arcs, limits: Limits) -> Arcs | None:
 
 
 def _sizes(arcs: Arcs) -> Array:
-    """What each unknown is measured by."""
+    """Return the scales of all unknowns."""
     n, lasting = arcs.n, arcs.end - arcs.instance.t0
     rows = np.concatenate([arcs.nodes(k) for k in range(len(arcs.intervals))])
     size = np.abs(rows).max(axis=0)
@@ -174,7 +175,7 @@ def _sizes(arcs: Arcs) -> Array:
 
 
 def _refined(arcs: Arcs) -> Arcs:
-    """The arcs on twice as many intervals."""
+    """Return the arcs on twice as many intervals."""
     parts: list[Array] = []
     for k, count in enumerate(arcs.intervals):
         a, b = arcs.times[k : k + 2]
@@ -184,7 +185,7 @@ def _refined(arcs: Arcs) -> Arcs:
 
 
 def _distance(one: Arcs, other: Arcs) -> float:
-    """Largest change of times, of the cost and of the initial costates, each relative to its size."""
+    """Return the largest relative change of times, cost and initial costates."""
     lasting = abs(other.end - other.instance.t0)
     changed = abs(cost(one) - cost(other)) / max(abs(cost(other)), 1e-300)
     first, again = (each.node(0, 0)[each.n :] for each in (one, other))

@@ -1,4 +1,4 @@
-"""Instances that are refused: path constraints that are violated where the motion is to start or to end."""
+"""Refusal of instances whose path constraints are violated at the given initial or final state."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from satsym.solvers.constrained.arcs import decided_at_end, given_end, terms, va
 from satsym.status import BadInput
 
 ROUNDING = 1e-12
-"""Rounding of a constraint that holds exactly, relative to its terms."""
+"""Relative rounding error of a constraint that is satisfied exactly, compared with its terms."""
 
 DURATIONS = (0.37, 1.0, 2.6)
-"""Where it is looked whether a constraint at the given end changes with time."""
+"""Durations at which it is tested whether a constraint at the given final state changes with time."""
 
 
 def refuse(instance: Instance) -> None:
-    """Refuse an instance whose given start or end violates a constraint, or leaves it at once.
+    """Refuse an instance whose given initial or final state violates a constraint, or leads to a violation at once.
 
     Raises
     ------
     BadInput
-        At the first of them.
+        If a path constraint is violated.
     """
     _refuse_at(instance, instance.t0, instance.initial, "initial", 1.0)
     if instance.tf is not None and not np.isnan(ended := given_end(instance, instance.tf)).any():
@@ -38,12 +38,12 @@ def refuse(instance: Instance) -> None:
 
 
 def _end(instance: Instance, end: float) -> tuple[float, ...]:
-    """What is given of the final state, zero where nothing is."""
+    """Return the given final states, and zero for the others."""
     return tuple(np.nan_to_num(given_end(instance, end)).tolist())
 
 
 def _stands(instance: Instance, which: NDArray[np.bool_]) -> bool:
-    """Whether these constraints have the same value at the given end whenever that is reached."""
+    """Return whether constraints have the same value at the given final state for all final times."""
     rest = np.zeros((len(instance.model.spec.controls), 1))
     ends = [instance.t0 + duration for duration in DURATIONS]
     found = [values(instance, np.array([t]), np.array(_end(instance, t))[:, None], rest)[which, 0] for t in ends]
@@ -51,7 +51,7 @@ def _stands(instance: Instance, which: NDArray[np.bool_]) -> bool:
 
 
 def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
-    """Refuse a path constraint that is violated at a state which is known as a whole, by more than rounding."""
+    """Refuse an instance if a completely known state violates a path constraint by more than rounding."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
     t, x, rest = np.array([time]), np.array(state)[:, None], np.zeros((len(model.spec.controls), 1))

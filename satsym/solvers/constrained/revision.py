@@ -1,4 +1,4 @@
-"""What is wrong with an extremal of a structure, and which structures to try instead."""
+"""Tests of an extremal with a given structure of arcs, and structures to try instead if a test fails."""
 
 from __future__ import annotations
 
@@ -16,32 +16,33 @@ from satsym.solvers.constrained.structure import FREE, Active, Contact, Event, P
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
-"""Violation of a constraint, relative to its size along the way, and negative share of a multiplier, that are none."""
+"""Violation of a constraint, relative to its magnitude, and relative magnitude of a negative multiplier, that are
+tolerated."""
 
 ZERO_CURVATURE = 1e-7
-"""Second rate of a constraint at a touch point, times the square of the duration and over its size, that is none."""
+"""Second time derivative of a constraint at a touch point, scaled by duration and magnitude, that counts as zero."""
 
 DENSE = 8
-"""Places an interval at which constraints are looked at."""
+"""Number of points in each interval at which constraints are evaluated."""
 
 ROUNDED = 1e-11
-"""Share of the duration by which junctions that come at once may change places."""
+"""Fraction of the duration by which coinciding junctions may be in the wrong order."""
 
 PARALLEL = 1.0 - 1e-6
-"""Squared cosine of the effects of two constraints on the controls from which on they are the same, or opposed."""
+"""Squared cosine between the effects of two constraints on the controls above which these count as parallel."""
 
 BESIDE = 0.05
-"""Share of the duration around a touch point within which a violation makes an arc of it."""
+"""Fraction of the duration around a touch point within which a violation turns it into an arc."""
 
 
 def wrong(arcs: Arcs) -> tuple[str, list[Structure]]:
-    """A reason why this is no extremal of the problem, empty if it is one; and what to try instead."""
+    """Return why arcs are no extremal of the problem (empty if they are one), and structures to try instead."""
     flaws = (_disordered, _pulling, _resting, _violated, _rising, _pulling_along)
     return next((found for found in (flaw(arcs) for flaw in flaws) if found is not None), ("", []))
 
 
 def contacts(arcs: Arcs) -> list[Contact]:
-    """The contacts of the structure, with the times and jumps that were found."""
+    """Return the contacts of the structure, with the times and multipliers that were found."""
     times, found = arcs.times, []
     moved = {one.time: found.time for one, found in zip(arcs.structure.passages, passages(arcs), strict=True)}
     at = {(one.contact, one.event): k for k, one in enumerate(arcs.junctions)}
@@ -66,7 +67,7 @@ def contacts(arcs: Arcs) -> list[Contact]:
 
 
 def passages(arcs: Arcs) -> tuple[Passage, ...]:
-    """The points on the way, with the times and jumps that were found."""
+    """Return the waypoints, with the times and multipliers that were found."""
     met = ((k, one) for k, one in enumerate(arcs.junctions) if one.event is Event.INTERIOR)
     return tuple(
         Passage(float(arcs.times[k + 1]), tuple((which, arcs.jump(k, which)) for which, _ in one.jumps))
@@ -75,26 +76,26 @@ def passages(arcs: Arcs) -> tuple[Passage, ...]:
 
 
 def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
-    """Times between the nodes and values (2n, N) there."""
+    """Return closely spaced times on an arc, and the values (2n, N) there."""
     a, b = arcs.times[arc : arc + 2]
     times = a + (b - a) * np.linspace(0.0, 1.0, DENSE * arcs.intervals[arc] + 1)
     return times, arcs.at(arc, times)
 
 
 def sizes(arcs: Arcs) -> Array:
-    """Sizes of each constraint along the way, shape (h,)."""
+    """Return the magnitude of each constraint along the motion, shape (h,)."""
     places = (_with_controls(arcs, arc) for arc in range(len(arcs.intervals)))
     return np.asarray(np.max([measured(arcs.instance, *place) for place in places], axis=0))
 
 
 def constrained(arcs: Arcs, arc: int) -> tuple[Array, Array]:
-    """Times between the nodes of an arc and all constraints there, shape (h, N)."""
+    """Return closely spaced times on an arc, and the values of all constraints there, shape (h, N)."""
     place = _with_controls(arcs, arc)
     return place[0], values(arcs.instance, *place)
 
 
 def _with_controls(arcs: Arcs, arc: int) -> tuple[Array, Array, Array]:
-    """Times between the nodes, states and controls there."""
+    """Return closely spaced times on an arc, and the states and controls there."""
     times, z = along(arcs, arc)
     return times, z[: arcs.n], control(arcs.instance, arcs.active[arc], times, z)
 
@@ -104,14 +105,14 @@ def _order(arcs: Arcs, constraint: int) -> int:
 
 
 def _instead(arcs: Arcs, places: int | Iterable[int], *others: Contact) -> Structure:
-    """The structure with other contacts in place of one or some."""
+    """Return the structure with some contacts replaced by others."""
     gone = {places} if isinstance(places, int) else set(places)
     kept = (one for k, one in enumerate(contacts(arcs)) if k not in gone)
     return ordered([*kept, *others], passages(arcs))
 
 
 def _ends_kept(one: Contact, *parts: Contact) -> list[Contact]:
-    """Parts of a contact, of which the first holds from the start on if that did, and the last until the end."""
+    """Return parts of a contact; the first and last keep its mark of lasting from the start or until the end."""
     return [
         replace(part, opens=one.opens and part.start <= one.start, closes=one.closes and part.end >= one.end)
         for part in parts
@@ -123,7 +124,7 @@ def _touch(one: Contact) -> Contact:
 
 
 def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Arcs that end before they begin, and junctions that change places."""
+    """Find arcs of negative length, and junctions in the wrong order."""
     lasting, known = arcs.end - arcs.instance.t0, contacts(arcs)
     for place, one in enumerate(known):
         if not one.touches and one.end - one.start < SLACK * lasting:
@@ -140,7 +141,7 @@ def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _possible(arcs: Arcs, structure: Structure) -> bool:
-    """Whether controls can keep all that is active at once, and each constraint is so once at a time."""
+    """Return whether a structure is possible: controls can keep all active constraints, each once at a time."""
     m = len(arcs.instance.model.spec.controls)
     every = structure.arcs(arcs.instance)
     opposed = any(_opposed(arcs, j, k) for active in every for j, k in combinations(active, 2))
@@ -150,7 +151,7 @@ def _possible(arcs: Arcs, structure: Structure) -> bool:
 
 
 def _opposed(arcs: Arcs, one: int, other: int) -> bool:
-    """Whether two constraints hold controls, and do so the same way or against each other."""
+    """Return whether two control constraints affect the controls in the same or the opposite direction."""
     if _order(arcs, one) + _order(arcs, other) > 0:
         return False
     z = arcs.node(0, 0)[: arcs.n, None]
@@ -160,7 +161,7 @@ def _opposed(arcs: Arcs, one: int, other: int) -> bool:
 
 
 def _joined(arcs: Arcs, one: int, other: int) -> Structure | None:
-    """The structure without a free arc between two contacts, of constraints that cannot be active at once."""
+    """Return the structure with two contacts of incompatible control constraints extended to meet; else ``None``."""
     first, second = contacts(arcs)[one], contacts(arcs)[other]
     if first.constraint == second.constraint or not _opposed(arcs, first.constraint, second.constraint):
         return None
@@ -169,7 +170,7 @@ def _joined(arcs: Arcs, one: int, other: int) -> Structure | None:
 
 
 def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Jumps with a negative multiplier."""
+    """Find jumps with a negative multiplier."""
     known = contacts(arcs)
     jumps = _jumps(arcs)
     pressures = [abs(arcs.pressure(k)) for k in arcs.pressed]
@@ -192,15 +193,15 @@ def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _jumps(arcs: Arcs) -> list[tuple[int, int, float]]:
-    """Jumps of all path constraints: at which junction, which, and its multiplier."""
+    """Return the jumps of all path constraints as junction, constraint and multiplier."""
     met = ((k, one) for k, one in enumerate(arcs.junctions) if one.event is not Event.INTERIOR)
     return [(k, which, arcs.jump(k, which)) for k, one in met for which, _ in one.jumps]
 
 
 def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Contacts between which their constraint stays on its boundary: one arc on it, whose multiplier may vanish.
+    """Find contacts between which their constraint stays active, so that they form one arc with zero multipliers.
 
-    A constraint that holds a control is left out: what the law keeps to by itself is no arc (:func:`without_idle`).
+    Control constraints are left out: a bound that the law reaches by itself is no arc (:func:`without_idle`).
     """
     known, room = contacts(arcs), sizes(arcs)
     for constraint in sorted({one.constraint for one in known}):
@@ -214,19 +215,19 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _one_contact(first: Contact, second: Contact) -> Contact:
-    """One contact from the start of a first with its constraint to the end of a second."""
+    """Return one contact from the start of a contact to the end of a later one."""
     jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
     return Contact(first.constraint, first.start, second.end, jumps, first.opens, second.closes)
 
 
 def _between(arcs: Arcs, constraint: int, start: float, end: float) -> Array:
-    """A constraint on the arcs between two times, shape (N,)."""
+    """Return the values of a constraint on the arcs between two times, shape (N,)."""
     inside = [k for k in range(len(arcs.intervals)) if start <= arcs.times[k] and arcs.times[k + 1] <= end]
     return np.concatenate([constrained(arcs, k)[1][constraint] for k in inside] or [np.full(1, np.inf)])
 
 
 def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Touch points at which the constraint would be crossed: its second rate is positive on one side."""
+    """Find touch points that would be crossed, because the constraint's second derivative is positive on one side."""
     room, lasting, instance, n = sizes(arcs), arcs.end - arcs.instance.t0, arcs.instance, arcs.n
     for k, junction in enumerate(arcs.junctions):
         if junction.event is not Event.TOUCH:
@@ -244,7 +245,7 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Constraints that are positive between contacts."""
+    """Find constraints that are violated between contacts."""
     room, worst = sizes(arcs), None
     if not len(room):
         return None
@@ -280,7 +281,7 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) -> Structure | None:
-    """The structure with a constraint active where it is violated, in place of another that holds the same controls."""
+    """Return the structure with a violated constraint in place of an active one that is incompatible, or ``None``."""
     for place, one in enumerate(contacts(arcs)):
         if one.touches or not one.start <= 0.5 * (start + end) <= one.end:
             continue
@@ -294,7 +295,7 @@ def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) ->
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:
-    """Structures with one arc in place of two contacts with a constraint between which it is violated."""
+    """Return structures with one arc in place of two contacts between which their constraint is violated."""
     known = contacts(arcs)
     own = [k for k, one in enumerate(known) if one.constraint == constraint]
     place = sum(known[k].middle < 0.5 * (start + end) for k in own)
@@ -305,7 +306,7 @@ def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Struc
 
 
 def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Boundary arcs with a negative multiplier somewhere: shorter ones, touch points at both ends, or one."""
+    """Find boundary arcs with a negative multiplier; try shorter arcs, or touch points, instead."""
     for place, one in enumerate(contacts(arcs)):
         if one.touches or multiplier(arcs, place)[1].min() >= -SLACK * _pressure(arcs):
             continue
@@ -320,9 +321,9 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def without_idle(arcs: Arcs) -> Structure | None:
-    """The structure without arcs of constraints that the law keeps to by itself; ``None`` where it has none.
+    """Return the structure without superfluous arcs of control constraints; ``None`` if it has none.
 
-    They hold a control, their multiplier vanishes all along, and nothing tells when such an arc begins.
+    The multiplier of such an arc vanishes because the law keeps the constraint by itself, so its ends are undetermined.
     """
     room, idle = sizes(arcs), list[int]()
     for place, one in enumerate(contacts(arcs)):
@@ -335,7 +336,7 @@ def without_idle(arcs: Arcs) -> Structure | None:
 
 
 def _of(arcs: Arcs, one: Contact) -> Iterable[tuple[Active, Array, Array]]:
-    """What is active on the arcs of a contact, with times and values there."""
+    """Yield active constraints, times and values on each arc of a contact."""
     for arc, active in enumerate(arcs.active):
         a, b = arcs.times[arc : arc + 2]
         if one.constraint in active and one.start <= 0.5 * (a + b) <= one.end:
@@ -343,7 +344,7 @@ def _of(arcs: Arcs, one: Contact) -> Iterable[tuple[Active, Array, Array]]:
 
 
 def _pushing(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
-    """Where the multiplier along an arc is positive; of a constraint on states alone nowhere, as it has to be kept."""
+    """Return the parts of an arc with positive multiplier; none for constraints on states alone."""
     if _order(arcs, one.constraint) > 0:
         return []
     times, eta = multiplier(arcs, place)
@@ -352,9 +353,9 @@ def _pushing(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
 
 
 def _released(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
-    """Where the multiplier along an arc is positive longest, with touch points in place of the ends that are left.
+    """Return the longest part of an arc with positive multiplier, and touch points in place of its former ends.
 
-    The arc begins and ends within, as a free arc beside a touch point makes it shorter still.
+    The new arc is a little shorter than this part, since a free arc beside a touch point shortens it further.
     """
     times, eta = multiplier(arcs, place)
     margin = BESIDE * (one.end - one.start)
@@ -373,7 +374,7 @@ def _released(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
 
 
 def multiplier(arcs: Arcs, place: int) -> tuple[Array, Array]:
-    """Times along a contact, and its eta there, shapes (N,)."""
+    """Return times along a contact, and its multiplier eta there, shapes (N,)."""
     one, times, eta = contacts(arcs)[place], [], []
     for active, t, z in _of(arcs, one):
         times.append(t)
@@ -382,7 +383,7 @@ def multiplier(arcs: Arcs, place: int) -> tuple[Array, Array]:
 
 
 def _pressure(arcs: Arcs) -> float:
-    """What multipliers are measured by: the largest of them, or jumps over the duration."""
+    """Return the scale of multipliers: the largest along arcs, or of jumps divided by the duration."""
     arcs_of = [k for k, one in enumerate(contacts(arcs)) if not one.touches]
     along_arcs = [float(np.abs(multiplier(arcs, k)[1]).max()) for k in arcs_of]
     jumps = [abs(jump) for *_, jump in _jumps(arcs)]

@@ -1,4 +1,4 @@
-"""Exact arcs, their structure revised until nothing is wrong with it, and the answer that they are."""
+"""Exact arcs whose structure is revised until all tests pass, and their conversion into a solution."""
 
 from __future__ import annotations
 
@@ -27,28 +27,29 @@ from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
 REVISED, REPEATED = 12, 2
-"""Structures that are tried at most from one path, and times that one of them is, from other junctions."""
+"""Maximum number of structures that are tried from one motion, and how often one structure is tried with other
+junctions."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stopped:
-    """No answer, and why."""
+    """The reason why no answer was found."""
 
     status: Status
     message: str
 
 
 def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: Limits) -> Arcs | Stopped:
-    """Exact arcs, the structure revised until nothing is wrong with it.
+    """Return exact arcs, with their structure revised until all tests pass, or the reason of a failure.
 
     Parameters
     ----------
     first
-        Structures to begin with.
+        Structures that are tried first.
     fresh
-        The unknowns of a structure near which no arcs are known.
+        Function that returns initial unknowns of a structure if no arcs near it are known.
     limits
-        When to give up.
+        Limits of time and work.
     """
     waiting: list[tuple[Structure, Arcs | None]] = [(one, None) for one in first]
     seen: Counter[tuple[object, ...]] = Counter()
@@ -74,7 +75,7 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
 
 
 def _lean(arcs: Arcs, limits: Limits) -> Arcs:
-    """The extremal less arcs that nothing needs, where what is left is an extremal as well."""
+    """Return the extremal without superfluous arcs, if the remaining arcs are an extremal, otherwise unchanged."""
     if (structure := without_idle(arcs)) is None:
         return arcs
     found = solved(from_arcs(arcs, structure), limits)
@@ -82,7 +83,7 @@ def _lean(arcs: Arcs, limits: Limits) -> Arcs:
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:
-    """Structures with one arc as a touch point, or without it where its order is one."""
+    """Return structures with one boundary arc replaced by a touch point or, for order one or zero, removed."""
     found = []
     for k, one in enumerate(structure.contacts):
         second = instance.model.spec.path_constraints[one.constraint].order > 1
@@ -94,7 +95,7 @@ def _variants(instance: Instance, structure: Structure) -> list[Structure]:
 
 
 def _events(arcs: Arcs, times: Array) -> tuple[Event, ...]:
-    """What happens at these times of arcs, where one boundary follows another the exit too."""
+    """Return the events at the junction times, including the exit where one boundary follows another."""
     instance, known = arcs.instance, arcs.structure.contacts
     names = [one.name for one in instance.model.spec.path_constraints]
     points = [one.name for one in instance.model.spec.interior]
@@ -112,7 +113,7 @@ def _events(arcs: Arcs, times: Array) -> tuple[Event, ...]:
 
 
 def _at_nodes(arcs: Arcs, arc: int, times: Array) -> Array:
-    """Values (2n, N) on an arc, from where its intervals begin: more accurate than its polynomials within these."""
+    """Return values (2n, N) on an arc, integrated from its nodes, more accurately than by its polynomials."""
     k, (a, b) = arcs.intervals[arc], arcs.times[arc : arc + 2]
     which = np.clip(((times - a) / (b - a) * k).astype(int), 0, k - 1)
     begins, starts = a + (b - a) * which / k, arcs.nodes(arc)[:: STAGES + 1][which].T
@@ -122,9 +123,9 @@ def _at_nodes(arcs: Arcs, arc: int, times: Array) -> Array:
 
 
 def answered(instance: Instance, arcs: Arcs, wall_s: float, source: str) -> Solution:
-    """Exact arcs, from what the source says, as a solution; junctions that come at once have one time.
+    """Return exact arcs as a solution; junctions that coincide get the same time.
 
-    Its history is that of the path and of the arcs that led here, not of the problem without constraints.
+    Its history is that of the motion and the arcs that led here, not of the problem without constraints.
     """
     nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
     parts: list[tuple[Array, Array, Array]] = []

@@ -1,4 +1,7 @@
-"""Which constraints are active when: contacts with boundaries, and the arcs into which they cut the time."""
+"""Structures of constrained extremals: contacts with constraint boundaries, and the arcs between their ends.
+
+A contact is a boundary arc or a touch point of one path constraint.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from satsym.solution import Solution
 
 
 class Event(Enum):
-    """What happens between two arcs."""
+    """Kind of a junction between two arcs."""
 
     ENTRY = "entry"
     EXIT = "exit"
@@ -22,82 +25,84 @@ class Event(Enum):
 
 
 Active = tuple[int, ...]
-"""Constraints on whose boundaries an arc runs, by their numbers in order."""
+"""Indices of the constraints that are active on an arc, in ascending order."""
 
 FREE: Active = ()
-"""On no boundary."""
+"""No active constraint."""
 
 
 ROUNDED = 1e-12
-"""Share of a time by which two that are the same may differ."""
+"""Relative difference of two times that count as equal."""
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A constraint on its boundary, from one time to another; for an instant where these are the same."""
+    """An interval on which a constraint is active: a boundary arc, or a touch point if start and end are equal."""
 
     constraint: int
     start: float
     end: float
     jumps: tuple[float, float] = (0.0, 0.0)
-    """Multipliers at both of its ends, to begin with; a touch point has the first."""
+    """Initial guesses of the multipliers at both ends; a touch point has the first only."""
     opens: bool = False
-    """Whether it holds from the start of the motion on."""
+    """Whether the constraint is active from the initial time on."""
     closes: bool = False
-    """Whether it holds until the end; a touch point is then met at the end alone."""
+    """Whether the constraint is active until the final time; a touch point is then at the final time."""
 
     @property
     def touches(self) -> bool:
-        """Whether it lasts for an instant only."""
+        """Return whether the contact is a touch point."""
         return self.start == self.end
 
     @property
     def middle(self) -> float:
-        """The middle of both times."""
+        """Return the mean of both times."""
         return 0.5 * (self.start + self.end)
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A point on the way that must be passed."""
+    """A waypoint that must be passed."""
 
     time: float
     jumps: tuple[tuple[int, float], ...]
-    """Its conditions, numbered after the path constraints, with multipliers to begin with."""
+    """Conditions of the waypoint, by indices after those of the path constraints, with initial guesses of their
+    multipliers."""
 
 
 @dataclass(frozen=True)
 class Junction:
-    """What happens between two arcs."""
+    """A junction between two arcs."""
 
     event: Event
     contact: int
-    """Whose event it is, by its number; of a point on the way that of the point."""
+    """Index of the contact that begins, ends or touches here, or of the waypoint."""
     constraint: int
     time: float
     left: int | None
-    """The contact that ends where this one begins: from one boundary directly to another."""
+    """Index of the contact that ends where this one begins, on a direct transition between boundaries; otherwise
+    ``None``."""
     before: Active
     after: Active
     jumps: tuple[tuple[int, float], ...]
-    """Constraints along whose gradients costates may jump, with multipliers to begin with."""
+    """Constraints along whose gradients costates may jump, with initial guesses of the multipliers."""
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Contacts in order of their middles; those of different constraints may overlap.
+    """Contacts in the order of their mean times; contacts of different constraints may overlap.
 
-    Controls may jump where a point on the way is passed, so that contacts end there, and others begin.
+    Controls may jump at a waypoint, so that contacts end there and new ones begin.
     """
 
     contacts: tuple[Contact, ...]
     passages: tuple[Passage, ...] = ()
 
     def junctions(self, instance: Instance) -> list[Junction]:
-        """Where arcs meet, in order of time.
+        """Return the junctions of arcs, in order of time.
 
-        Costates jump where a constraint of order two begins or ends to be active. Where another one of order two stays
-        active at any junction, its own conditions there ask for a jump along its gradient, too.
+        Costates jump where a constraint of order two becomes active or inactive. If another constraint of order two
+        stays active at any junction, its conditions there require a jump along its gradient, too.
         """
         orders = [one.order for one in instance.model.spec.path_constraints]
         known, found = set(self.begun), list[Junction]()
@@ -127,7 +132,7 @@ class Structure:
         return found
 
     def _events(self) -> list[tuple[float, Event, int]]:
-        """Times, kinds, and contacts of all junctions."""
+        """Return times, kinds, and indices of contacts or waypoints of all junctions."""
         found = [(one.time, Event.INTERIOR, number) for number, one in enumerate(self.passages)]
         passed = {one.time for one in self.passages}
         for number, one in enumerate(self.contacts):
@@ -140,40 +145,43 @@ class Structure:
         return sorted(found, key=lambda each: each[0])
 
     def _changing(self, time: float) -> tuple[set[int], set[int]]:
-        """Constraints whose contacts end where a point is passed, and those whose contacts begin there."""
+        """Return the constraints whose contacts end at a waypoint, and those whose contacts begin there."""
         lasting = [one for one in self.contacts if not one.touches]
         ended, started = ({one.constraint for one in lasting if at(one) == time} for at in (_end, _start))
         return ended, started
 
     def joined(self, contact: int) -> bool:
-        """Whether another contact begins where this one ends: from one boundary directly to another."""
+        """Return whether another contact begins where this one ends, on a direct transition between boundaries."""
         one = self.contacts[contact]
         if one.touches or any(each.time == one.end for each in self.passages):
             return False
         return any(each.start == one.end and not each.touches for each in self.contacts)
 
     def _followed(self, contact: int) -> int | None:
-        """The contact that ends where this one begins."""
+        """Return the index of the contact that ends where this one begins, or ``None``."""
         start = self.contacts[contact].start
         places = (k for k, each in enumerate(self.contacts) if each.end == start and not each.touches)
         return next(places, None)
 
     @property
     def begun(self) -> Active:
-        """What is active from the start on."""
+        """Return the constraints that are active from the initial time on."""
         return tuple(sorted(one.constraint for one in self.contacts if one.opens and not one.touches))
 
     @property
     def ended(self) -> Active:
-        """What is active at the end, or touched there."""
+        """Return the constraints that are active or touched at the final time."""
         return tuple(sorted(one.constraint for one in self.contacts if one.closes))
 
     def arcs(self, instance: Instance) -> list[Active]:
-        """What is active on each arc."""
+        """Return the active constraints on each arc."""
         return [self.begun, *(one.after for one in self.junctions(instance))]
 
     def name(self, instance: Instance) -> str:
-        """For messages: ``free, wall, free``; touch points in brackets, what is active at once with plus signs."""
+        """Return the structure as text, such as ``free, wall, free``.
+
+        Touch points are in brackets; simultaneously active constraints are joined by plus signs.
+        """
         names = [one.name for one in instance.model.spec.path_constraints]
         points = [one.name for one in instance.model.spec.interior]
 
@@ -190,7 +198,7 @@ class Structure:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What two of them have in common that differ in times only."""
+        """Return a key that is equal for structures that differ in times only."""
         events = (
             (event, *map(frozenset, self._changing(time)))
             if event is Event.INTERIOR
@@ -209,13 +217,13 @@ def _end(contact: Contact) -> float:
 
 
 def ordered(contacts: Iterable[Contact], passages: tuple[Passage, ...] = ()) -> Structure:
-    """The structure of contacts in any order, those cut within which a point on the way is passed."""
+    """Return the structure of contacts given in any order, with contacts divided at waypoints."""
     parts = [part for one in contacts for part in _cut(one, passages)]
     return Structure(tuple(sorted(parts, key=lambda one: one.middle)), passages)
 
 
 def _cut(contact: Contact, passages: tuple[Passage, ...]) -> list[Contact]:
-    """A contact in parts between points on the way."""
+    """Return the parts of a contact between waypoints."""
     times = [one.time for one in passages]
     near = ROUNDED * (abs(contact.start) + abs(contact.end))
     start, end = (next((t for t in times if abs(t - at) <= near), at) for at in (contact.start, contact.end))
@@ -229,7 +237,7 @@ def _cut(contact: Contact, passages: tuple[Passage, ...]) -> list[Contact]:
 
 
 def stated_arcs(solution: Solution) -> list[Active]:
-    """What is active on each arc between events."""
+    """Return the active constraints on each arc of a solution, from its events."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
     known = {names.index(one.name) for one in solution.events if one.t <= solution.times[0]}
     found = [tuple(sorted(known))]
@@ -244,14 +252,14 @@ def stated_arcs(solution: Solution) -> list[Active]:
 
 
 def within(solution: Solution) -> list[tuple[Happening, ...]]:
-    """The events between start and end, where arcs meet; those of one time together, what begins or touches first."""
+    """Return the events of a solution at its junctions, grouped by time; entries and touch points come before exits."""
     inner = [one for one in solution.events if solution.times[0] < one.t < solution.times[-1]]
     groups = (list(group) for _, group in groupby(inner, key=lambda one: one.t))
     return [tuple(sorted(group, key=lambda one: one.kind == "exit")) for group in groups]
 
 
 def pressing(solution: Solution) -> Active:
-    """The constraints on states that may push at the end: those of the last arc, and those that are touched there."""
+    """Return constraints on states that may have a multiplier at the final time: active on the last arc, or touched."""
     spec = solution.instance.model.spec.path_constraints
     names = [one.name for one in spec]
     last = {names.index(one.name) for one in solution.events if one.t >= solution.times[-1]}

@@ -1,4 +1,4 @@
-"""By how much a trajectory without boundary arcs violates path constraints, between its nodes as well."""
+"""Violation of path constraints by a trajectory without boundary arcs, at its nodes and between them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from satsym.solution import Solution
 from satsym.solvers.constrained.arcs import sizes, values
 
 VIOLATED = 1e-9
-"""Largest violation that is none, relative to the constraint's size along the way."""
+"""Largest violation, relative to the constraint's magnitude, that is tolerated."""
 
 BETWEEN = 8
-"""Places between two nodes."""
+"""Number of points evaluated between two nodes."""
 
 
 def violation(solution: Solution) -> float:
-    """Largest violation of a path constraint at the nodes and between them, relative to its size along the way."""
+    """Return the largest violation of a path constraint at nodes and between them, relative to its magnitude."""
     instance, n, t = solution.instance, len(solution.x), solution.times
     model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
     found = [values(instance, t, solution.x, solution.u)]
@@ -32,7 +32,7 @@ def violation(solution: Solution) -> float:
 
 
 def between(solution: Solution, at: Array) -> Array:
-    """States and costates at any times, shape (2n, M): cubics with their values and rates at the nodes beside these."""
+    """Return states and costates at any times, shape (2n, M), by cubic Hermite interpolation between the nodes."""
     instance, n, t = solution.instance, len(solution.x), solution.times
     model, p, z = instance.model, instance.parameters, np.concatenate([solution.x, solution.lam])
     moving = (model.dynamics_batch(t, z[:n], solution.u, p), model.costate_rate_batch(t, z[:n], solution.u, z[n:], p))
