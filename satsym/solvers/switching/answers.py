@@ -1,4 +1,4 @@
-"""What a solver of switching problems hands back."""
+"""Conversion of the results of switching problems into solutions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from satsym.status import Status
 
 
 def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], began: float) -> Solution:
-    """Exact arcs as a solution."""
+    """Return exact arcs as a solution."""
     at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
     nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
     times, z, u = trajectory.grid(nodes)
@@ -46,7 +46,7 @@ def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], b
 
 
 def without(instance: Instance, stopped: Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
-    """Why there is no answer."""
+    """Return a solution without an answer, with the reason of the failure."""
     nothing = iteration.unsolved(instance, "bang-bang", time.perf_counter() - began)
     message, done = stopped.message, len(history)
     return replace(nothing, status=stopped.status, message=message, iterations=done, history=history)

@@ -1,7 +1,7 @@
-"""From a guessed structure to an extremal of exact arcs: Newton, and repairs of the structure where that shows faults.
+"""From a guessed structure to an extremal of exact arcs, by Newton's method and repairs of the structure.
 
-An arc whose length comes out negative is dropped; where a control is not at the level that minimises H, an arc at the
-better level is put in.
+An arc whose length becomes negative is removed; where a control is not at the level that minimises H, an arc at the
+better level is inserted.
 """
 
 from __future__ import annotations
@@ -23,30 +23,31 @@ from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Guess, constr
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
 
 REPAIRS = 8
-"""Changes of a guessed structure before it is given up."""
+"""Maximum number of changes of a guessed structure."""
 
 SOLVED = 1e-10
 """Largest relative residual of an extremal."""
 
 SIZED = 1e-6
-"""Share of its size in a guess that a state has at least in the extremal."""
+"""Minimum scale of a state in the extremal, relative to its scale in the guess."""
 
 FAINT_COSTATE = 1e-40
-"""Share of the largest size below which another is none: what moves only because costates have no exact zeros."""
+"""Magnitude, relative to the largest scale, below which a state counts as zero. Such states only move because zero
+costates are replaced by tiny ones."""
 
 EVALUATED = 250
-"""Evaluations of an arc, roughly: how the work of corrections is counted."""
+"""Approximate number of evaluations on an arc, by which the work of corrections is counted."""
 
 NO_TIME = 1e-11
-"""An arc shorter than this share of the duration is none."""
+"""Length of an arc, relative to the duration, below which it counts as zero."""
 
 FLEETING = 1e-4
-"""Shortest arc beside a singular arc or at an end, if there is an extremal without: a switching function may have
-a double zero, and within so little time it comes to nothing that could be seen."""
+"""Length, relative to the duration, below which an arc beside a singular arc or at an end is removed if an extremal
+without it exists. Such an arc can come from a double zero of a switching function, and its effect is negligible."""
 
 
 class Origin(Enum):
-    """From where exact arcs were found, in the words of messages."""
+    """Sources of exact arcs, with the texts for messages."""
 
     STRUCTURE = "a given structure"
     REST = "rest"
@@ -58,20 +59,20 @@ class Origin(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Exact:
-    """An extremal of exact arcs that minimises H all along."""
+    """An extremal of exact arcs that minimises H everywhere."""
 
     refined: Refined
     trajectory: Trajectory
-    """Its structure with its times, and the arcs."""
+    """The structure with its times, and the arcs."""
     iterations: int
-    """Corrections of all attempts."""
+    """Number of corrections in all attempts."""
     origin: Origin = Origin.STRUCTURE
     smoothing: float = 0.0
-    """From where it was found, and by how much that was smoothed."""
+    """Source of the arcs, and the smoothing parameter of the regularised problem if they come from one."""
 
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
-    """Make a guess exact, with repairs; ``None`` where that leads nowhere."""
+    """Make a guess exact, with repairs of its structure; ``None`` if this fails."""
     return tried(lambda: _attempt(instance, first, limits))
 
 
@@ -107,7 +108,7 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
 
 
 def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> Exact | None:
-    """The extremal without an arc that is next to nothing beside a singular one or at an end, if there is one."""
+    """Return the extremal without a very short arc beside a singular arc or at an end, if one exists, else ``None``."""
     lengths, lasting = found.structure.durations(found.at.times, instance.t0, found.at.end), found.at.end - instance.t0
     for control, (row, own) in enumerate(zip(found.structure.levels, lengths, strict=True)):
         for arc in np.flatnonzero(own < FLEETING * lasting).tolist():
@@ -119,13 +120,13 @@ def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> E
 
 
 def nearest(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles."""
+    """Return the extremal of a structure or a least-squares approximation; ``None`` if the iteration fails."""
     equations = Equations(instance, at.structure, sizes(instance, at), at.end - instance.t0)
     return solve(equations, equations.start(at.costates, at.times, at.end), limits.watch)
 
 
 def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """The extremal of a structure, exact in units of its own states: those of a guess may be far larger."""
+    """Return the extremal of a structure, exact relative to its own states, which may be smaller than in the guess."""
     found = nearest(instance, at, limits) or _in_parts(instance, at, limits)
     for last in (False, True):
         if found is None or found.residual > SOLVED or not found.at.end > instance.t0:
@@ -142,7 +143,7 @@ def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
 
 
 def _in_parts(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """The extremal where deviations grow so much that arcs have to begin anew; ``None`` where they do not."""
+    """Return the extremal by multiple shooting, if errors grow so much that arcs need restarts; otherwise ``None``."""
     course, n = at.course, len(instance.initial)
     if course is None:
         return None
@@ -161,13 +162,13 @@ def _equations(instance: Instance, found: Refined) -> Equations:
 
 
 def _residual(instance: Instance, found: Refined) -> float:
-    """The largest residual of arcs, relative to their sizes."""
+    """Return the largest residual of the arcs, relative to their scales."""
     equations = _equations(instance, found)
     return float(np.abs(equations.residual(found.at, found.arcs)[0]).max(initial=0.0))
 
 
 def _own_sizes(instance: Instance, found: Refined) -> Array:
-    """Sizes of states as the arcs show them, by where they end and how fast they move; those of costates as known."""
+    """Return scales of states from the values and rates at the ends of arcs; those of costates are unchanged."""
     n = len(instance.initial)
     states = np.maximum(given(instance), SIZED * found.sizes[:n])
     for arc in found.arcs:
@@ -178,14 +179,14 @@ def _own_sizes(instance: Instance, found: Refined) -> Array:
 
 
 def given(instance: Instance) -> Array:
-    """Sizes of what is given of each state at its ends."""
+    """Return magnitudes of the given initial and final states."""
     final = map(instance.final.get, instance.model.spec.state_names)
     given = [abs(v) if isinstance(v, float | int) else 0.0 for v in final]
     return np.maximum(np.abs(np.array(instance.initial)), np.array(given))
 
 
 def sizes(instance: Instance, at: Guess) -> Array:
-    """Sizes of states and costates: given ends and what controls do in the duration; costates as they are guessed."""
+    """Return scales of states, from given ends and the guessed motion, and of costates, from their guess."""
     n = len(instance.initial)
     states = given(instance)
     equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)
@@ -199,14 +200,14 @@ def sizes(instance: Instance, at: Guess) -> Array:
 
 
 def _sized(states: Array, costates: Array) -> Array:
-    """Sizes of both, none of them zero."""
+    """Return scales of states and costates, with zeros replaced."""
     states = np.where(states > FAINT_COSTATE * states.max(), states, 1.0)
     cost = float((states * costates).max())
     return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])
 
 
 def _shortest(found: Refined, start: float) -> tuple[float, int, int] | None:
-    """Length, control and number of the shortest arc; ``None`` without switches."""
+    """Return length, control and index of the shortest arc; ``None`` without switches."""
     lengths = found.structure.durations(found.at.times, start, found.at.end)
     arcs = [(float(value), i, k) for i, row in enumerate(lengths) if len(row) > 1 for k, value in enumerate(row)]
     return min(arcs) if arcs else None
@@ -219,7 +220,7 @@ def _dropped(found: Refined, control: int, arc: int) -> Guess:
 
 
 def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory] | None:
-    """The extremal less arcs that have no length, if what is left still solves the equations."""
+    """Return the extremal without arcs of no length if it still solves the equations, otherwise ``None``."""
     start, end = instance.t0, found.at.end
     while True:
         shortest = _shortest(found, start)
@@ -239,7 +240,7 @@ def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory]
 
 
 def _inserted(found: Refined, trajectory: Trajectory, fault: Violation) -> Guess:
-    """A guess with an arc at the better level where the control is at a worse one."""
+    """Return a guess with an arc at the better level inserted where a control does not minimise H."""
     own = found.structure.by_control(found.at.times)
     times, row = own[fault.control], found.structure.levels[fault.control]
     middle = (fault.start + fault.end) / 2.0

@@ -1,4 +1,4 @@
-"""Whether an extremal of exact arcs keeps to path constraints, and is pressed against those on whose boundary it is."""
+"""Tests of path constraints and of their multipliers along an extremal of exact arcs."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from satsym.solvers.switching.structure import SINGULAR, jumps, on_boundary
 from satsym.solvers.switching.trajectory import Trajectory, Violation, runs
 
 LENGTH_BESIDE = 0.01
-"""Share of a boundary arc that a singular one is given beside it."""
+"""Fraction of a boundary arc that is given to a new singular arc beside it."""
 
 
 def acting(instance: Instance, constraint: int) -> int:
-    """The control that moves the last rate of a constraint."""
+    """Return the index of the control that affects the last time derivative of a constraint most."""
     rng, x = np.random.default_rng(0), np.array(instance.initial)
     drawn = np.where(x == 0.0, 1.0, x) * rng.uniform(0.5, 1.0, len(x))
     return int(np.abs(effects(instance, constraint, instance.t0, drawn)).argmax())
 
 
 def effects(instance: Instance, constraint: int, time: float, x: Array) -> Array:
-    """What each control does to the last rate of a constraint, shape (m,)."""
+    """Return the derivatives of the last time derivative of a constraint with respect to the controls, shape (m,)."""
     m, order = len(instance.model.spec.controls), instance.model.spec.path_constraints[constraint].order
     places = np.repeat(x[:, None], m, axis=1)
     rates = instance.model.path_rates_batch(np.full(m, time), places, 1j * NUDGE * np.eye(m), instance.parameters)
@@ -34,7 +34,7 @@ def effects(instance: Instance, constraint: int, time: float, x: Array) -> Array
 
 
 def values(instance: Instance, times: Array, z: Array) -> Array:
-    """All path constraints, shape (h, N), those that bound a control at its rest."""
+    """Return the values of all path constraints, shape (h, N), with controls at rest."""
     model, rest = instance.model, np.zeros((len(instance.model.spec.controls), len(times)))
     bounds = instance.control_set.arguments
     return np.asarray(
@@ -43,7 +43,7 @@ def values(instance: Instance, times: Array, z: Array) -> Array:
 
 
 def off_boundaries(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
-    """Stretches on which a path constraint is violated, or where its multiplier on its boundary has the wrong sign."""
+    """Return the intervals on which a path constraint is violated or a boundary multiplier has the wrong sign."""
     arcs, tables = trajectory.arcs, trajectory.looked_at
     instance = arcs[0].field.instance
     constraints = [values(instance, *table) for table in tables]
@@ -69,7 +69,7 @@ def off_boundaries(trajectory: Trajectory, slack: float = 1e-9) -> list[Violatio
 
 
 def _pulling(arcs: list[Arc], slack: float) -> list[Violation]:
-    """Jumps of the wrong sign: a singular arc is tried in between."""
+    """Return the jumps of the wrong sign, as places for a singular arc between."""
     found = []
     for k, (before, after) in enumerate(pairwise(arcs)):
         for which, one in ((k, before), (k + 1, after)):
@@ -84,7 +84,7 @@ def _pulling(arcs: list[Arc], slack: float) -> list[Violation]:
 
 
 def jump(field: BoundaryField, time: float, before: Array, after: Array) -> tuple[float, float]:
-    """The multiplier with which costates jump along the gradient of a constraint, and one that would be large."""
+    """Return the multiplier of the costates' jump along a constraint gradient, and a multiplier of typical size."""
     slope = pushed(field.instance, field.constraint, time, before, 0.0)[1][0]
     length = max(float(slope @ slope), 1e-300)
     lam = np.abs(before[field.n :]).max()
@@ -92,7 +92,7 @@ def jump(field: BoundaryField, time: float, before: Array, after: Array) -> tupl
 
 
 def _left(arcs: list[Arc], which: int, before: int, after: int, control: int) -> int:
-    """The level for which a control leaves a boundary: that of the nearer neighbour where nothing is between."""
+    """Return the level to which a control leaves a boundary: that of an adjacent arc, or singular."""
     if not before and which:
         return arcs[which - 1].field.levels[control]
     if not after and which < len(arcs) - 1:

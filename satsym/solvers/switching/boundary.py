@@ -1,4 +1,4 @@
-"""The extremal equations while a control keeps to the boundary of a path constraint."""
+"""The extremal equations while a control keeps a path constraint on its boundary."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from satsym.solvers.switching.structure import BOUNDARY, constraint_of
 
 
 class BoundaryField(Field):
-    """Rates of states and costates while one control keeps to a boundary, and others their levels.
+    """Rates of states and costates while one control keeps a constraint active and the others keep their levels.
 
-    The multiplier of the constraint is what keeps the switching function of that control at zero.
+    The multiplier of the constraint keeps the switching function of that control at zero.
     """
 
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
@@ -40,7 +40,7 @@ class BoundaryField(Field):
         return found
 
     def controls(self, t: NDArray[Any], z: NDArray[Any]) -> NDArray[Any]:
-        """The controls at many points, shape (m, N)."""
+        """Return the controls at many points, shape (m, N)."""
         x, lam = z[: self.n], z[self.n :]
         table = self.model.boundary_control_batch(t, x, lam, self.p, self.instance.control_set.arguments)
         u = np.empty((len(self.levels), len(t)), dtype=z.dtype)
@@ -49,13 +49,13 @@ class BoundaryField(Field):
         return u
 
     def multiplier(self, t: NDArray[Any], z: NDArray[Any]) -> NDArray[Any]:
-        """What keeps the switching function at zero, shape (N,)."""
+        """Return the multiplier that keeps the switching function at zero, shape (N,)."""
         x, lam, bounds = z[: self.n], z[self.n :], self.instance.control_set.arguments
         found = np.asarray(self.model.path_multiplier_batch(t, x, self.controls(t, z), lam, self.p, bounds))
         return np.broadcast_to(found[self.constraint], t.shape)
 
     def off_bound(self, bound: float, t: float, z: list[float]) -> tuple[float, Array, float]:
-        """The control less a bound, relative to its range, and what :func:`off_boundary` says besides."""
+        """Return the control minus a bound, relative to its range, and derivatives as :func:`off_boundary` does."""
         low, high = self.instance.lower[self.acting], self.instance.upper[self.acting]
         found = self.controls(*_moved(t, z))[self.acting] / (high - low)
         return float(found[0].real - bound / (high - low)), found[:-1].imag / NUDGE, float(found[-1].imag / NUDGE)
@@ -81,7 +81,7 @@ class BoundaryField(Field):
 def off_boundary(
     instance: Instance, constraint: int, t: float, z: list[float], rate: bool = False
 ) -> tuple[float, Array, float]:
-    """A constraint, or its first rate, with derivatives by z, shape (2n,), and by explicit time."""
+    """Return a constraint or its first time derivative, and its derivatives by z, shape (2n,), and explicit time."""
     n, (times, moved) = len(instance.initial), _moved(t, z)
     rest, p = np.zeros((len(instance.model.spec.controls), len(times))), instance.parameters
     if rate:
@@ -95,9 +95,9 @@ def off_boundary(
 def pushed(
     instance: Instance, constraint: int, t: float, z: Array, by: float
 ) -> tuple[Array, tuple[Array, Array, Array]]:
-    """States and costates after a jump of the costates by so much of g_x against it.
+    """Return states and costates after a jump of the costates by ``-by`` times g_x.
 
-    Besides g_x, shape (n,), and its derivatives by states and by explicit time, shapes (n, n) and (n,).
+    Also returns g_x, shape (n,), and its derivatives with respect to states and explicit time, shapes (n, n) and (n,).
     """
     n, (times, moved) = len(instance.initial), _moved(t, z.tolist())
     rest = np.zeros((len(instance.model.spec.controls), len(times)))
@@ -107,6 +107,6 @@ def pushed(
 
 
 def _moved(t: float, z: list[float]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """A place by complex steps in each of its components and in time, shapes (2n + 1,) and (2n, 2n + 1)."""
+    """Return a point with complex steps in each of its components and in time, shapes (2n + 1,) and (2n, 2n + 1)."""
     step = 1j * NUDGE * np.eye(len(z) + 1)
     return t + step[-1], np.array(z)[:, None] + step[:-1]

@@ -1,10 +1,11 @@
-"""Controls that switch infinitely often in finite time: a motion, and an interval that encloses the least cost.
+"""Controls that switch infinitely often in finite time: an admissible motion, and bounds of the minimum cost.
 
-A singular arc of even order is joined by no finite number of switches, see
-:func:`satsym.symbolic.switching.singular.chattering`. What is left is the regularised problem, ever less smoothed. Its
-motion is admissible, so that the least cost is not above what it costs. Its costates obey the equations of the problem
-itself, so that where this is convex the least cost is not farther below than the integral of what H exceeds its
-minimum by (the duality gap; Mangasarian, SIAM Journal on Control 4, 1966). Elsewhere that holds to first order.
+A singular arc of even order cannot be joined by a finite number of switches, see
+:func:`satsym.symbolic.switching.singular.chattering`. The problem is regularised with ever less smoothing instead. The
+motion is admissible, so that its cost is an upper bound of the minimum cost. Its costates obey the equations of the
+original problem, so that in a convex problem the minimum cost is at most lower by the integral of the excess of H over
+its minimum (the duality gap; Mangasarian, SIAM Journal on Control 4, 1966). In other problems this holds to first
+order.
 """
 
 from __future__ import annotations
@@ -34,36 +35,37 @@ from satsym.solvers.switching.trajectory import runs
 from satsym.status import Status
 
 POINTS = 12
-"""Gauss points in each interval of the mesh, on which bounds are met at nodes only."""
+"""Number of Gauss points in each mesh interval; bounds become active or inactive at nodes only."""
 
 LEVELS = 5
-"""Number of the least smoothed problems that are solved accurately, one after the other, until one is."""
+"""Number of the least smoothed problems that are tried, until one of them is solved accurately."""
 
 INSIDE = 1e-3
-"""Share of the width of its range by which a control is off both bounds, where it may chatter."""
+"""Distance of a control from both bounds, relative to its range, above which it counts as intermediate and may
+chatter."""
 
 NARROW = 1e-9
-"""Width of the cost interval, relative to the cost, at which no less is smoothed."""
+"""Width of the cost interval, relative to the cost, at which smoothing is not reduced further."""
 
 DIGITS = 1e-11
-"""Relative error of the two ends of the interval."""
+"""Relative error of both ends of the cost interval."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a smoothed extremal shows of controls that may chatter."""
+    """Properties of a smoothed extremal that indicate chattering."""
 
     smoothing: float
     switches: int
-    """How often controls go from one bound to the other."""
+    """Number of passages of controls from one bound to the other."""
     longest: float
-    """The longest time for which such a control is off both bounds."""
+    """Longest time for which a control that may chatter is off both bounds."""
     width: float
-    """Width of the cost interval, relative to the cost, roughly."""
+    """Approximate width of the cost interval, relative to the cost."""
 
 
 def look(instance: Instance, near: Smoothed, seen: Sample) -> Look:
-    """What one extremal shows."""
+    """Return the properties of one smoothed extremal that indicate chattering."""
     low, high = instance.control_set.box
     off = INSIDE * (high - low)
     free = (seen.u > low + off) & (seen.u < high - off)
@@ -79,11 +81,13 @@ def look(instance: Instance, near: Smoothed, seen: Sample) -> Look:
 
 
 def shows(looks: Sequence[Look]) -> bool:
-    """Whether a control that may chatter switches, and less smoothing leaves it off its bounds, or shows more switches.
+    """Return whether a sequence of extremals with decreasing smoothing shows chattering.
 
-    Where it switches once the time between its bounds is proportional to the smoothing, at a free end to a third root
-    of it at least. Beside a singular arc of second order it is so to the fourth root at first, and does not vanish if
-    there is time for rest; that more switches show may take a million times less smoothing where bounds are unlike.
+    This is so if a control that may chatter switches and stays off its bounds, or switches more often, with less
+    smoothing. At a single switch the time between the bounds is proportional to the smoothing, at a free end at least
+    to its third root. Beside a singular arc of second order it is at first proportional to the fourth root, and does
+    not vanish if there is time for rest; more switches may only show with a million times less smoothing if the bounds
+    are unequal.
     """
     if not looks:
         return False
@@ -95,12 +99,12 @@ def shows(looks: Sequence[Look]) -> bool:
 
 
 def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) -> Solution | None:
-    """What the least regularised problem says of those that can be solved accurately; ``None`` without any.
+    """Return the solution of the least regularised problem that can be solved accurately; ``None`` if none can.
 
     Parameters
     ----------
     levels
-        Solved roughly, the least smoothed last.
+        Approximate solutions of regularised problems, the least smoothed last.
     """
     solved = ((one.problem, tried(partial(_accurate, one, limits))) for one in reversed(levels[-LEVELS:]))
     problem, found = next(((one, curve) for one, curve in solved if curve is not None), (None, None))
@@ -135,7 +139,7 @@ def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) ->
 
 
 def at_rest(solution: Solution) -> bool:
-    """Whether H vanishes at the end, so that a longer time, spent there, costs the same."""
+    """Return whether H vanishes at the final time, so that a longer final time has the same cost."""
     model, p = solution.instance.model, solution.instance.parameters
     t, x, u, lam = solution.times, solution.x, solution.u, solution.lam
     terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
@@ -143,7 +147,7 @@ def at_rest(solution: Solution) -> bool:
 
 
 def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
-    """By how much H is above its minimum over the control set, shape (N,)."""
+    """Return the excess of H over its minimum on the control set, shape (N,)."""
     model, p = instance.model, instance.parameters
     sigma, weight = model.switching_function_batch(t, x, lam, p), model.magnitude_weight_batch(t, x, lam, p)
     low, high = instance.control_set.box
@@ -152,7 +156,7 @@ def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Arra
 
 
 def _accurate(near: Smoothed, limits: Limits) -> Curve | None:
-    """An extremal with nodes where bounds are met, to the tolerance of the instance."""
+    """Return an extremal of full accuracy with nodes where bounds become active or inactive; ``None`` on failure."""
     problem, curve = near.problem, near.curve
     tolerance = problem.instance.solver.tolerance
     refined = refine(problem, curve, tolerance, keep_nodes=True)
@@ -163,7 +167,7 @@ def _accurate(near: Smoothed, limits: Limits) -> Curve | None:
 
 
 def _corners(problem: TwoPoint, curve: Curve) -> Array:
-    """Where switching functions vanish: there what H exceeds its minimum by has corners."""
+    """Return the zeros of the switching functions, where the excess of H over its minimum has corners."""
     inner = np.linspace(0.0, 1.0, POINTS, endpoint=False)
     tau = np.append((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inner).ravel(), 1.0)
 
@@ -181,7 +185,7 @@ def _corners(problem: TwoPoint, curve: Curve) -> Array:
 
 
 def _interval(instance: Instance, problem: TwoPoint, curve: Curve, edges: Array) -> CostInterval:
-    """What the motion costs, and how far the least cost may lie below; smooth between edges."""
+    """Return the interval of the minimum cost, from integrals that are smooth between the given edges."""
     gauss, n = scheme(POINTS), problem.states
     widths = np.diff(edges)
     weights = problem.elapsed(curve.theta) * np.outer(widths, gauss.weights).ravel()
@@ -194,14 +198,14 @@ def _interval(instance: Instance, problem: TwoPoint, curve: Curve, edges: Array)
 
 
 def _along(problem: TwoPoint, curve: Curve, tau: Array) -> tuple[Array, Array, Array]:
-    """Times, states and costates, and controls."""
+    """Return times, states and costates, and controls along a curve."""
     instance, n = problem.instance, problem.states
     t, z = instance.t0 + problem.elapsed(curve.theta) * tau, curve(tau) * problem.scale.both
     return t, z, smoothed_law(instance, problem.control_set, t, z[:n], z[n:])
 
 
 def _passages(instance: Instance, times: Array, u: Array, sigma: Array) -> tuple[tuple[float, ...], ...]:
-    """When each control goes from one bound to the other: where its switching function changes its sign in between."""
+    """Return the times at which each control passes between bounds, where its switching function vanishes."""
     low, high = instance.control_set.box
     found = []
     for row, value in zip(np.where(u >= high, 1, np.where(u <= low, -1, 0)), sigma, strict=True):

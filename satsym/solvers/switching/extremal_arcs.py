@@ -1,4 +1,4 @@
-"""An extremal arc by arc, from initial costates and switching times, and how it changes with them."""
+"""Integration of an extremal arc by arc, from initial costates and switching times, and its derivatives by these."""
 
 from __future__ import annotations
 
@@ -19,45 +19,45 @@ from satsym.solvers.switching.structure import Event, Structure
 from satsym.solvers.switching.throttled import equations
 
 TOLERANCE = 3e-14
-"""Error of a step, relative to the size of each component."""
+"""Error tolerance of a step, relative to the scale of each component."""
 
 ROUGH = 1e-7
-"""Error of a step where no more is asked for, relative to the size of each component."""
+"""Error tolerance of a step if only rough accuracy is needed, relative to the scale of each component."""
 
 ROUNDING = 1e-14
-"""Relative length of a piece in which nothing happens."""
+"""Relative length of a piece below which it is not integrated."""
 
 WHOLE = 1.0
-"""First step that is tried, as a share of a piece."""
+"""First step that is tried, as a fraction of a piece."""
 
 ROUGHLY = 1e6
-"""So many times larger may errors of the derivatives be: Newton's method corrects itself."""
+"""Factor by which errors of derivatives may exceed those of values, since Newton's method corrects itself."""
 
 
 CORNERS, LOOKED = 1e-9, 64
-"""Relative error of the times of corners, and how many stretches of a piece are looked at."""
+"""Relative error of the times of corners, and number of intervals of a piece in which they are searched for."""
 
 MOST_ON_ARC, MOST_EVALUATIONS = 2000, 30_000
-"""Evaluations of a piece with a singular control, and of any other one. Off its manifold a singular motion may leave
-for infinity, and next to a centre of attraction steps become ever smaller. Of other pieces 999 in 1,000 need fewer than
-4,000."""
+"""Maximum number of evaluations on a piece with a singular control, and on any other piece. Off its manifold a singular
+motion may diverge, and close to a centre of attraction steps become ever smaller. Of the other pieces, 999 in 1,000
+need fewer than 4,000 evaluations."""
 
 
 @dataclass(frozen=True)
 class Stop:
-    """Where an arc begins anew from values of its own, as the flow grows too much for one to the end."""
+    """A restart of an arc from values of its own, used if errors grow too much along one flow."""
 
     piece: int
     fraction: float
-    """Which of the pieces between any switches, and after which fraction of it."""
+    """Index of the piece between switches of any control, and the fraction of the piece after which the restart is."""
 
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """What an extremal of a structure is found by."""
+    """The unknowns that determine an extremal of a structure."""
 
     costates: Array
-    """At the start, shape (n,)."""
+    """Initial costates, shape (n,)."""
     times: Array
     """Switching times, one control after the other."""
     end: float
@@ -65,67 +65,67 @@ class Unknowns:
     multipliers: Array
     """Multipliers of terminal constraints."""
     stops: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    """States and costates at the stops, shape (M, 2n)."""
+    """States and costates at the restarts, shape (M, 2n)."""
     jumps: Array = field(default_factory=lambda: np.zeros(0))
-    """Multipliers of :attr:`Structure.jumps`."""
+    """Multipliers of the jumps in :attr:`Structure.jumps`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A piece between two switches of any control, or the part of one between stops."""
+    """A piece between two switches of any control, or a part of one between restarts."""
 
     field: Field
-    """Its equations."""
+    """Equations of the piece."""
     start: float
     end: float
-    """Times."""
+    """Start and end of the piece."""
     before: Array
     after: Array
-    """States and costates there, shape (2n,)."""
+    """States and costates at the start and at the end, shape (2n,)."""
     event: Event | None
-    """The switch that ends it; ``None`` for the last."""
+    """The switch that ends the piece; ``None`` for the last piece."""
     slopes: Array
-    """Derivatives of ``after`` by the initial costates, the switching times, the final time, the values at stops and
-    the multipliers of J jumps, the piece's end moving with these: shape (2n, n + K + 1 + 2nM + J). Meaningless where
-    they were not asked for."""
+    """Derivatives of ``after`` with respect to the initial costates, the switching times, the final time, the values at
+    restarts and the multipliers of J jumps, including the shift of the end: shape (2n, n + K + 1 + 2nM + J). Undefined
+    if derivatives were not requested."""
     stop: int | None = None
-    """The number of the stop that ends it, if one does."""
+    """Index of the restart that ends the piece; ``None`` if a switch or the final time does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """How arcs are integrated."""
+    """Accuracy of the integration of arcs."""
 
     sizes: Array
-    """Typical sizes of states and costates, shape (2n,)."""
+    """Typical magnitudes of states and costates, shape (2n,)."""
     slopes: bool = True
-    """Whether derivatives are needed."""
+    """Whether derivatives are computed."""
     tolerance: float = TOLERANCE
-    """Error of a step, relative to the size of each component."""
+    """Error tolerance of a step, relative to the scale of each component."""
 
 
 def extremal(
     instance: Instance, structure: Structure, at: Unknowns, accuracy: Accuracy, stops: Sequence[Stop] = ()
 ) -> list[Arc]:
-    """Follow the extremal from arc to arc.
+    """Integrate the extremal arc by arc.
 
     Parameters
     ----------
     instance
         Model, parameters, bounds and initial state.
     structure
-        Levels of the controls.
+        Levels of the controls on successive arcs.
     at
-        Costates and times.
+        Initial costates, switching times and other unknowns.
     accuracy
-        How arcs are integrated.
+        Accuracy of the integration.
     stops
-        Where they begin anew, in order of time.
+        Restarts, in order of time.
 
     Raises
     ------
     ArithmeticError, ValueError, satsym.solvers.simulation.extrapolation.NotFinite
-        If it is not finite.
+        If the integration is not finite.
     """
     n, end_column = len(instance.initial), len(instance.initial) + structure.switches
     z = np.concatenate([instance.initial, at.costates])
@@ -167,14 +167,14 @@ def extremal(
 
 
 def jumped(instance: Instance, constraint: int, arc: Arc, by: float, moving: Array, column: int) -> Array:
-    """Derivatives of the values after a jump that ends an arc.
+    """Return derivatives of the values after a jump that ends an arc.
 
     Parameters
     ----------
     by
-        Its multiplier, the unknown of this column.
+        Multiplier of the jump, the unknown with the index ``column``.
     moving
-        Derivatives of its time.
+        Derivatives of the time of the jump.
     """
     n, (slope, by_state, by_time) = len(instance.initial), pushed(instance, constraint, arc.end, arc.after, by)[1]
     found = arc.slopes.copy()
@@ -184,7 +184,7 @@ def jumped(instance: Instance, constraint: int, arc: Arc, by: float, moving: Arr
 
 
 def growth(field: Field, start: float, end: float, z: Array, sizes: Array) -> float:
-    """By how much the flow of an arc enlarges deviations in units of ``sizes``; infinite where it goes nowhere."""
+    """Return the growth of deviations along an arc in units of ``sizes``; infinite if the integration fails."""
     try:
         _, matrix = _piece(field, start, end, z, Accuracy(sizes, tolerance=ROUGH))
     except FAILURES:
@@ -194,7 +194,7 @@ def growth(field: Field, start: float, end: float, z: Array, sizes: Array) -> fl
 
 
 def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy) -> tuple[Array, Array]:
-    """States and costates at the end of a piece, and their derivatives by those at its start."""
+    """Return states and costates at the end of a piece, and their derivatives by those at its start."""
     rows, sizes, tolerance = len(z), accuracy.sizes, accuracy.tolerance
     if abs(end - start) <= ROUNDING * max(abs(start), abs(end)):
         return z + (end - start) * np.array(field.rates(start, z.tolist())), np.eye(rows)
@@ -226,9 +226,9 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
 
 
 def _corners(field: Field, start: float, end: float, z: Array, sizes: Array) -> list[float]:
-    """Times within a piece at which controls that do not switch meet or leave bounds.
+    """Return times within a piece at which controls that do not switch reach or leave bounds.
 
-    Rates are continuous there, so that an error in such a time counts by its square.
+    Rates are continuous there, so that an error of such a time has an effect of second order.
     """
     if not len(field.sides(start, z.tolist())):
         return []

@@ -1,4 +1,4 @@
-"""The extremal equations with each control at its level, and derivatives of switching functions."""
+"""The extremal equations with each control at a fixed level, and derivatives of switching functions."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from satsym.solvers.switching.magnitudes import moving, ratio
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 
 NUDGE = 1e-30
-"""Imaginary step of derivatives: exact, for nothing is subtracted."""
+"""Imaginary step of complex-step derivatives, which are exact since no difference is taken."""
 
 BEYOND_RANGE = 10.0
-"""Times the width of its range by which a singular control is off its middle where nothing brings it back."""
+"""Distance of a singular control from the middle of its range, in widths of the range, beyond which it counts as
+diverged."""
 
 PLACES, WEIGHTS = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 SHIFT = 1e-3
-"""Places and weights of a central difference of fourth order, and its step as a share of the duration."""
+"""Points and weights of a fourth-order central difference, and its step as a fraction of the duration."""
 
 
 class Field:
@@ -32,8 +33,8 @@ class Field:
     instance
         Model, parameters and bounds.
     levels
-        One for each control. At most one of them is singular: it keeps the switching function at zero. So does one on
-        the boundary of a path constraint; :attr:`kept` is whichever of both there is.
+        Level of each control. At most one is singular, so that it keeps its switching function at zero, or on the
+        boundary of a path constraint; :attr:`kept` is the index of this control.
     """
 
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
@@ -50,29 +51,29 @@ class Field:
             self.middle, self.beyond = (low + high) / 2.0, BEYOND_RANGE * (high - low)
 
     def _at(self, control: int, level: int) -> float:
-        """The value of a control at its lower bound, at rest or at its upper bound."""
+        """Return the value of a control at its lower bound, at rest or at its upper bound."""
         low, high = (bounds[control] for bounds in self.instance.control_set.switching)
         return high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
 
     def kept_at(self, t: float, z: list[float]) -> Row:
-        """The argument ``bounds`` of kernels that keep what switches as it is there."""
+        """Return the argument ``bounds`` for which kernels keep the switching controls at their present values."""
         return self.instance.control_set.saturated(self.control(t, z)).arguments
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
-        """The controls, shape (m,)."""
+        """Return the controls, shape (m,)."""
         return self.saturated if self.singular is None else self._feedback(t, z)[0]
 
     def sides(self, t: float, z: list[float]) -> NDArray[np.bool_]:
-        """On which bounds controls are that do not switch: where this changes, rates have a corner."""
+        """Return on which bounds the controls are that do not switch; rates have a corner where this changes."""
         return np.zeros(0, bool)
 
     def rates(self, t: float, z: list[float]) -> list[float]:
-        """dz/dt, 2n numbers."""
+        """Return dz/dt as 2n numbers."""
         x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
         return [*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)]
 
     def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
-        """dz/dt, shape (2n,), and its derivatives by z, shape (2n, 2n)."""
+        """Return dz/dt, shape (2n,), and its derivatives with respect to z, shape (2n, 2n)."""
         u, by_point, by_control = (self.saturated, None, None) if self.singular is None else self._feedback(t, z)
         x, lam = z[: self.n], z[self.n :]
         rates = np.array([*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)])
@@ -85,7 +86,7 @@ class Field:
         return rates, fixed - np.outer(by_control, slope)
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
-        """Controls (m, N) and rates (2n, N) at many points at once."""
+        """Return controls (m, N) and rates (2n, N) at many points."""
         x, lam = z[: self.n], z[self.n :]
         u = np.empty((len(self.saturated), z.shape[1]))
         u[:] = np.array(self.saturated)[:, None]
@@ -98,20 +99,20 @@ class Field:
         return u, found
 
     def sigma(self, t: float, z: list[float], control: int) -> float:
-        """A switching function."""
+        """Return the switching function of a control."""
         return float(self.model.switching_function(t, z[: self.n], z[self.n :], self.p)[control])
 
     def switching(self, t: float, z: list[float], control: int) -> tuple[float, float]:
-        """A switching function and its rate."""
+        """Return the switching function of a control and its time derivative."""
         x, lam = z[: self.n], z[self.n :]
         rate = self.model.switching_rate(t, x, self.control(t, z), lam, self.p)[control]
         return self.sigma(t, z, control), float(rate)
 
     def gradient(self, t: float, z: list[float], control: int) -> Array:
-        """A switching function by states and costates, shape (2n,).
+        """Return the derivatives of a switching function by states and costates, shape (2n,).
 
-        By the states it is what the control does to the costates, taken with both signs so that a weight of |u|
-        falls out; by the costates what it does to the states.
+        The derivative by the states is the effect of the control on the costates, averaged over both signs so that a
+        weight of |u| cancels; that by the costates is the effect on the states.
         """
         x, lam = z[: self.n], z[self.n :]
         unit = [float(i == control) for i in range(len(self.saturated))]
@@ -121,11 +122,11 @@ class Field:
         return np.array([*by_state, *self._column(t, x, self.saturated, control)])
 
     def weight(self, t: float, z: list[float], control: int) -> float:
-        """The weight of the magnitude of a control."""
+        """Return the weight of the magnitude of a control in H."""
         return float(self.model.magnitude_weight(t, z[: self.n], z[self.n :], self.p)[control])
 
     def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
-        """The weight of a magnitude differentiated by states and costates, shape (2n,); its rate along the extremal."""
+        """Return derivatives of this weight by states and costates, shape (2n,), and its rate along the extremal."""
         steps = np.concatenate([np.eye(2 * self.n), np.array(self.rates(t, z))[:, None]], axis=1)
         x, lam = np.split(np.array(z)[:, None] + 1j * NUDGE * steps, 2)
         times = t + 1j * NUDGE * np.append(np.zeros(2 * self.n), 1.0)
@@ -134,35 +135,35 @@ class Field:
         return slopes[:-1], float(slopes[-1])
 
     def ratios(self, control: int) -> tuple[float, ...]:
-        """What multiplies the weight of a control's magnitude where it passes from its level to another, for each."""
+        """Return the factors of the weight in the switching conditions from a control's level to each other level."""
         now = self.levels[control]
         others = (level for level in (LOWER, REST, UPPER) if level != now)
         return tuple(dict.fromkeys(self.ratio(control, (now, level)) for level in others))
 
     def ratio(self, control: int, levels: tuple[int, int]) -> float:
-        """What multiplies the weight of its magnitude where a control passes between two levels; see :func:`ratio`."""
+        """Return the factor of the weight in the switching condition between two levels, see :func:`ratio`."""
         if max(levels) >= SINGULAR:
             return 0.0
         return ratio(*(self._at(control, level) for level in levels))
 
     def passing(self, t: float, z: list[float], control: int, ratio: float) -> tuple[float, float]:
-        """What vanishes where a control passes from level to level, for that ratio; and its rate."""
+        """Return the value of the switching condition with the given factor of the weight, and its time derivative."""
         sigma, rate = self.switching(t, z, control)
         if not ratio:
             return sigma, rate
         return sigma + ratio * self.weight(t, z, control), rate + ratio * self.weight_gradient(t, z, control)[1]
 
     def passing_gradient(self, t: float, z: list[float], control: int, ratio: float) -> Array:
-        """Derivatives by states and costates of what vanishes where a control passes between levels, shape (2n,)."""
+        """Return derivatives of the switching condition between two levels by states and costates, shape (2n,)."""
         gradient = self.gradient(t, z, control)
         return gradient + ratio * self.weight_gradient(t, z, control)[0] if ratio else gradient
 
     def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
-        """The rate of a switching function by states and costates, shape (2n,)."""
+        """Return derivatives of the rate of a switching function by states and costates, shape (2n,)."""
         return self._rate_slopes(t, z, self.control(t, z), control)[:-1]
 
     def legendre(self, t: float, z: list[float]) -> float:
-        """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
+        """Return the generalised Legendre-Clebsch expression of the singular control; positive if it is strict."""
         return -float(self._accelerations(np.array([t]), np.array(z)[:, None])[1][0])
 
     def _with(self, value: float) -> tuple[float, ...]:
@@ -170,7 +171,7 @@ class Field:
         return (*self.saturated[: self.singular], value, *self.saturated[self.singular + 1 :])
 
     def _column(self, t: float, x: list[float], u: tuple[float, ...], control: int | None = None) -> Array:
-        """What a control does to the rates of the states, shape (n,)."""
+        """Return the derivatives of the states' rates with respect to a control, shape (n,)."""
         which = self.singular if control is None else control
         if which is None or not self.moving[which]:
             return np.array(self.model.jacobian_u(t, x, u, self.p)).reshape(self.n, -1)[:, which]
@@ -180,9 +181,9 @@ class Field:
         return np.array(both).reshape(2, self.n, -1)[:, :, which].mean(axis=0)  # so that its magnitude falls out
 
     def _accelerations(self, t: Array, z: Array) -> tuple[Array, Array]:
-        """Second derivative of the switching function in time without the singular control, and by that control.
+        """Return the second time derivative of the switching function without the singular control, and its factor.
 
-        The rate of the switching function, differentiated along the extremal by an imaginary step.
+        The rate of the switching function is differentiated along the extremal by an imaginary step.
         """
         assert self.singular is not None
         count = z.shape[1]
@@ -196,7 +197,7 @@ class Field:
         return found[:count], found[count:] - found[:count]
 
     def _rate_slopes(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
-        """The rate of a switching function by states, costates and explicit time, shape (2n + 1,)."""
+        """Return derivatives of the rate of a switching function by states, costates and explicit time, (2n + 1,)."""
         count = 2 * self.n + 1
         columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(count)
         x, lam, times = columns[: self.n], columns[self.n : -1], columns[-1]
@@ -205,7 +206,7 @@ class Field:
         return np.asarray(found[control].imag / NUDGE)
 
     def _feedback(self, t: float, z: list[float]) -> tuple[tuple[float, ...], Array, Array]:
-        """The controls on a singular arc; the gradient of the rate of its switching function; what it does to z."""
+        """Return the controls on a singular arc, the gradient of the switching rate, and the effect on z."""
         assert self.singular is not None
         x, lam, idle = z[: self.n], z[self.n :], self._with(0.0)
         gradient = self.gradient(t, z, self.singular)
@@ -221,11 +222,11 @@ class Field:
         return self._with(value), slopes[:-1], by_control
 
     def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
-        """How the gradient of the rate of its switching function changes along a singular arc, shape (2n,).
+        """Return the rate of change of the gradient of the switching function's rate on a singular arc, shape (2n,).
 
-        It consists of first derivatives that were generated, so that an imaginary step along the motion gives its
-        change to the last digits, which an integrator that is to find so many asks for. Only how the effect of the
-        control depends on time explicitly, which it seldom does, takes a difference besides.
+        It consists of generated first derivatives, so that an imaginary step along the motion gives it to rounding
+        accuracy, as the tight integration tolerance requires. Only an explicit dependence of the control's effect on
+        time, which is rare, needs a finite difference.
         """
         assert self.singular is not None
         n, unit, here = self.n, np.zeros(len(u)), np.array(z)
@@ -249,7 +250,7 @@ class Field:
         return np.asarray(found + explicit @ WEIGHTS / step)
 
     def _by_time(self, t: Array, z: Array) -> Array:
-        """The gradient of the singular control's switching function by explicit time, shape (2n, N)."""
+        """Return derivatives of the singular control's switching-function gradient by explicit time, shape (2n, N)."""
         assert self.singular is not None
         x, lam, times = z[: self.n].astype(complex), z[self.n :].astype(complex), t + 1j * NUDGE
         unit = np.zeros((len(self.saturated), len(t)))

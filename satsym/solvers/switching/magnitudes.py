@@ -1,7 +1,7 @@
-"""Weights of magnitudes of controls in H, which may have either sign where magnitudes stand in the motion.
+"""Weights of the magnitudes of controls in H, which can have either sign if magnitudes occur in the dynamics.
 
-H is affine in a control u but for w |u|. Between two levels u and v it changes by (u - v) (sigma + ratio w) with
-ratio = (|u| - |v|) / (u - v): that this vanishes is what a switch between them asks for.
+H is affine in a control u except for w |u|. Between two levels u and v it changes by (u - v) (sigma + ratio w) with
+ratio = (|u| - |v|) / (u - v): a switch between these levels requires that this vanishes.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from satsym.instance import Instance
 
 
 def ratio(u: float, v: float) -> float:
-    """What multiplies the weight of a magnitude beside the switching function, between two levels."""
+    """Return the factor of the weight of a magnitude in the switching condition between two levels."""
     return (abs(u) - abs(v)) / (u - v) if u != v else 0.0
 
 
 def effective(low: Array, high: Array, sigma: Array, weight: Array) -> tuple[Array, Array]:
-    """Switching functions and weights, none of them negative, that decide alike.
+    """Return switching functions and nonnegative weights that give the same decisions.
 
-    Where a magnitude is worth having, one of the bounds is best: which one, the ratio between them says.
+    If the weight of a magnitude is negative, one of the bounds is optimal; the ratio between them decides which.
 
     Parameters
     ----------
     low, high
-        Bounds, of shapes that go with the others.
+        Bounds of the controls, in shapes that broadcast with the other arguments.
     """
     room = high - low
     both = np.divide(np.abs(high) - np.abs(low), room, out=np.zeros(np.shape(room)), where=room > 0.0)
@@ -34,17 +34,17 @@ def effective(low: Array, high: Array, sigma: Array, weight: Array) -> tuple[Arr
 
 
 def moving(instance: Instance) -> tuple[bool, ...]:
-    """Which controls' magnitudes stand in the motion."""
+    """Return for each control whether its magnitude occurs in the dynamics."""
     spec = instance.model.spec
     return tuple(name in spec.moving_magnitudes for name in spec.control_names)
 
 
 def costs(instance: Instance) -> tuple[float, ...]:
-    """What magnitudes cost at the start, by the running cost alone."""
+    """Return the weights of the magnitudes in the running cost at the initial time."""
     none = (0.0,) * len(instance.initial)
     return tuple(instance.model.magnitude_weight(instance.t0, instance.initial, none, instance.parameters))
 
 
 def resting(instance: Instance) -> tuple[bool, ...]:
-    """Which controls may best be at rest for a while: those whose magnitudes cost something, or stand in the motion."""
+    """Return which controls can optimally be at rest: their magnitudes have a cost or occur in the dynamics."""
     return tuple(cost > 0.0 or moves for cost, moves in zip(costs(instance), moving(instance), strict=True))

@@ -1,7 +1,7 @@
-"""The least time to a given end, whatever a switching problem costs: evidence where a given time is too short.
+"""The minimum time to a given end, for any switching problem: evidence that a given final time is too short.
 
-Everything that a cost adds to costates and switching functions is there for vanishing costates as well, so the
-difference is what the motion alone makes of them: the kernels of the problem of least time.
+The contributions of a cost to costate rates and switching functions remain if costates vanish, so that subtracting
+these values gives the functions of the minimum-time problem with the same motion.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from satsym.solvers.switching.magnitudes import moving
 Function = Callable[..., Any]
 
 STEP = 1e-6
-"""Step of the central difference that gives the rate of the reference, relative to the time."""
+"""Step of the central difference for the rate of the reference, relative to the time."""
 
 
 def minimum_time(instance: Instance) -> Instance | None:
-    """The problem of least time with the same motion, bounds and ends; ``None`` where constraints tie the end."""
+    """Return the minimum-time problem with the same motion, bounds and ends; ``None`` with terminal constraints."""
     if instance.model.spec.multipliers:
         return None
     if any(moving(instance)):  # what magnitudes do to the motion is not told apart from what they cost
@@ -37,7 +37,7 @@ def minimum_time(instance: Instance) -> Instance | None:
 
 
 class _LeastTime:
-    """What the solver of switching problems calls, for a running cost of one."""
+    """Functions that the solver of switching problems calls, for a running cost of 1."""
 
     def __init__(self, model: Kernels) -> None:
         self.model = model
@@ -50,7 +50,7 @@ class _LeastTime:
             self.linear[f"{name}_batch"] = self._alone_batch(name, place)
 
     def functions(self) -> dict[str, Function]:
-        """All of the model's functions, those that a cost enters replaced."""
+        """Return all functions of the model, with those that depend on a cost replaced."""
         n, m = self.n, self.m
         return (
             self.whole
@@ -74,7 +74,7 @@ class _LeastTime:
         )
 
     def _alone(self, name: str, place: int) -> Function:
-        """A function of the costates, the argument at that place, without what it is where they vanish."""
+        """Return a function of the costates (the argument at ``place``) minus its value for vanishing costates."""
 
         def alone(*given: Any) -> tuple[float, ...]:
             plain, without = self.whole[name], (*given[:place], self.nothing, *given[place + 1 :])
@@ -83,7 +83,7 @@ class _LeastTime:
         return alone
 
     def _alone_batch(self, name: str, place: int) -> Function:
-        """The part of a batch function that one argument makes: what is left when that is zero is taken off."""
+        """Return a batch function minus its value for a zero argument at ``place``."""
 
         def alone(*given: Any, out: Array | None = None) -> Array:
             batch, without = self.whole[f"{name}_batch"], (*given[:place], 0.0 * given[place], *given[place + 1 :])
@@ -92,28 +92,28 @@ class _LeastTime:
         return alone
 
     def extremal_jacobian_batch(self, t: Array, x: Array, u: Array, lam: Array, p: Sequence[float]) -> Array:
-        """The rates of states and costates by both, controls saturated, shape (2n, 2n, N)."""
+        """Return derivatives of state and costate rates by both for saturated controls, shape (2n, 2n, N)."""
         batch, n = self.whole["extremal_jacobian_batch"], self.n
         found, without = batch(t, x, u, lam, p), batch(t, x, u, 0.0 * lam, p)
         found[n:, :n] -= without[n:, :n]
         return np.asarray(found)
 
     def extremal_jacobian(self, t: float, x: Any, u: Any, lam: Any, p: Any) -> tuple[float, ...]:
-        """The rates of states and costates by both at one point, controls saturated, row by row."""
+        """Return derivatives of state and costate rates by both at one point for saturated controls, row by row."""
         n, plain = self.n, self.whole["extremal_jacobian"]
         found, without = (np.array(plain(t, x, u, at, p)).reshape(2 * n, 2 * n) for at in (lam, self.nothing))
         found[n:, :n] -= without[n:, :n]
         return tuple(found.ravel().tolist())
 
     def law(self, t: Array, x: Array, lam: Array, p: Any, bounds: Any) -> tuple[Array, NDArray[np.bool_]]:
-        """Controls of the regularised problem, shape (m, N), and where they are within their bounds."""
+        """Return controls of the regularised problem, shape (m, N), and whether they are within their bounds."""
         control_set = ControlSet.from_arguments(self.model.spec, bounds)
         wanted = -self.linear["switching_function_batch"](t, x, lam, p) / control_set.smoothing
         low, high = control_set.box
         return control_set.project(wanted), (wanted > low) & (wanted < high)
 
     def canonical_batch(self, t: Array, x: Array, lam: Array, p: Any, bounds: Any, out: Array | None = None) -> Array:
-        """Rates of states and costates under that law."""
+        """Return rates of states and costates under the regularised control law."""
         u, _ = self.law(t, x, lam, p, bounds)
         rates = self.whole["dynamics_batch"](t, x, u, p), self.linear["costate_rate_batch"](t, x, u, lam, p)
         return _into(out, np.concatenate(rates))
@@ -121,7 +121,7 @@ class _LeastTime:
     def canonical_jacobian_batch(
         self, t: Array, x: Array, lam: Array, p: Any, bounds: Any, out: Array | None = None
     ) -> Array:
-        """The canonical rates under the law by states and costates, shape (2n, 2n, N)."""
+        """Return derivatives of these rates by states and costates, shape (2n, 2n, N)."""
         n, m = self.n, self.m
         u, free = self.law(t, x, lam, p, bounds)
         smoothing = ControlSet.from_arguments(self.model.spec, bounds).smoothing
@@ -139,7 +139,7 @@ class _LeastTime:
     def ends(
         self, t: float, x: Any, lam: Any, _nu: Any, p: Any, bounds: Sequence[float], final: Sequence[float]
     ) -> tuple[list[float], Array]:
-        """Residuals at the end and their derivatives: given states, free ones' costates, and the Hamiltonian."""
+        """Return residuals at the end and derivatives: given states, free states' costates, and the Hamiltonian."""
         n = self.n
         given, on_reference, target = np.array(final).reshape(3, -1)
         nothing = np.zeros(n)
@@ -160,14 +160,14 @@ class _LeastTime:
         return [*rows.tolist(), value], table
 
     def _reference(self, t: float, p: Any) -> tuple[Array, Array]:
-        """The reference and its rate of change."""
+        """Return the reference and its time derivative."""
         width = STEP * max(1.0, abs(t))
         before, after = (np.array(self.model.reference(at, p)) for at in (t - width, t + width))
         return np.array(self.model.reference(t, p)), (after - before) / (2.0 * width)
 
 
 def _into(out: Array | None, found: Array) -> Array:
-    """What was found, stored where it is wanted."""
+    """Return values, stored in an output array if there is one."""
     if out is None:
         return found
     out[...] = found
@@ -175,7 +175,7 @@ def _into(out: Array | None, found: Array) -> Array:
 
 
 def _one(batch: Function) -> Function:
-    """A batch form as a function of one point, on floats."""
+    """Return a batch function as a function of one point."""
 
     def alone(t: float, x: Any, lam: Any, p: Any, bounds: Any) -> tuple[float, ...]:
         found = batch(np.array([t]), np.array(x)[:, None], np.array(lam)[:, None], p, bounds)

@@ -20,28 +20,30 @@ from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure, co
 
 MOST_STEPS = 20
 NEAR_CORRECTION = 1e-2
-"""Arcs need no more than rough accuracy until a correction is smaller than that."""
+"""Size of a correction below which arcs are integrated at full accuracy; before, rough accuracy is enough."""
 
 SETTLED_CORRECTION = 1e-7
-"""The first correction below this is the last."""
+"""Size of a correction below which it is the last one."""
 
 LOST = 1e4
-"""Size of a correction that leads nowhere."""
+"""Size of a correction above which the iteration is given up."""
 
 FREE, GROWN = 4, 2.0
-"""After so many corrections none may be so many times larger than the one before."""
+"""``FREE`` is the number of corrections after which none may exceed the previous one by more than the factor
+``GROWN``."""
 
 STEADY, EVEN = 3, 0.8
-"""Corrections that shrink evenly: each by at least this share of the factor of the one before."""
+"""``STEADY`` is the number of successive reduction factors of corrections that are compared; corrections decrease
+evenly if each factor is at least ``EVEN`` times the one before."""
 
 BOLD = 0.5
-"""Share of the duration by which times may move at once."""
+"""Largest change of times in one correction, relative to the duration."""
 
 TURNED = 2.0
-"""Share of their size by which costates may change at once."""
+"""Largest change of costates in one correction, relative to their scales."""
 
 RANK = 1e-11
-"""Smallest singular value, relative to the largest, of a direction that the equations determine."""
+"""Smallest relative singular value of a direction that the equations determine."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,53 +52,53 @@ class Refined:
 
     structure: Structure
     at: Unknowns
-    """Levels, and what they lead to."""
+    """Levels of the controls, and the unknowns that solve the equations."""
     arcs: list[Arc]
-    """The extremal."""
+    """Arcs of the extremal."""
     residual: float
-    """Largest residual, each relative to the size of what it compares."""
+    """Largest residual, relative to its scale."""
     iterations: int
-    """Corrections."""
+    """Number of corrections."""
     sizes: Array
-    """Sizes of states and costates, which residuals are relative to, shape (2n,)."""
+    """Scales of states and costates that residuals are relative to, shape (2n,)."""
     stops: tuple[Stop, ...] = ()
-    """Where arcs begin anew."""
+    """Restarts of the integration."""
 
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """What must vanish at the end of an extremal and at its switches, scaled row by row."""
+    """The equations at the end of an extremal and at its switches, each scaled."""
 
     instance: Instance
     structure: Structure
-    """What is solved, and with which levels."""
+    """The instance, and the levels of its controls."""
     sizes: Array
-    """Sizes of states and costates, shape (2n,)."""
+    """Scales of states and costates, shape (2n,)."""
     duration: float
-    """Typical."""
+    """Typical duration."""
     stops: tuple[Stop, ...] = ()
-    """Where arcs begin anew."""
+    """Restarts of the integration."""
 
     @property
     def free_time(self) -> bool:
-        """Whether the final time is unknown."""
+        """Return whether the final time is free."""
         return self.instance.tf is None
 
     def start(
         self, costates: Array, times: Array, end: float, stops: Array | None = None, jumps: Array | None = None
     ) -> Unknowns:
-        """Unknowns with vanishing multipliers."""
+        """Return unknowns with zero multipliers of terminal constraints."""
         none = np.zeros(len(self.instance.model.spec.multipliers))
         values = np.zeros((0, len(self.sizes))) if stops is None else stops
         jumps = np.zeros(len(self.structure.jumps)) if jumps is None else jumps
         return Unknowns(np.asarray(costates), np.asarray(times), end, none, values, jumps)
 
     def arcs(self, at: Unknowns, slopes: bool = True, tolerance: float = TOLERANCE) -> list[Arc]:
-        """The extremal; raises as :func:`extremal`."""
+        """Return the arcs of the extremal; raises the same errors as :func:`extremal`."""
         return extremal(self.instance, self.structure, at, Accuracy(self.sizes, slopes, tolerance), self.stops)
 
     def residual(self, at: Unknowns, arcs: list[Arc]) -> tuple[Array, Array]:
-        """Residuals and their derivatives by all unknowns, in units of :attr:`scale`: shapes (r,) and (r, v)."""
+        """Return residuals and their derivatives by all unknowns, in units of :attr:`scale`, shapes (r,) and (r, v)."""
         values, slopes = self._end(at, arcs[-1])
         inner = [row for before, after in pairwise(arcs) for row in self._junction(at, before, after)]
         inner += self._singular_start(arcs[0])
@@ -109,7 +111,7 @@ class Equations:
 
     @property
     def scale(self) -> Array:
-        """Sizes of the unknowns."""
+        """Return the scales of the unknowns."""
         n = len(self.instance.initial)
         times = np.full(self.structure.switches + self.free_time, self.duration)
         cost = float((self.sizes[:n] * self.sizes[n:]).max())
@@ -118,16 +120,16 @@ class Equations:
         return np.concatenate([self.sizes[n:], times, np.tile(self.sizes, len(self.stops)), jumps, multipliers])
 
     def _room(self, constraint: int) -> float:
-        """Typical size of a path constraint, the unit of its jumps.
+        """Return the typical magnitude of a path constraint, the unit of its jumps.
 
-        It is the value at the initial state, or what it changes by with the sizes of the states, if that is more.
+        It is the value at the initial state or, if larger, the change of the constraint with the scales of the states.
         """
         start = [*self.instance.initial, *np.zeros(len(self.instance.initial))]
         value, gradient, _ = off_boundary(self.instance, constraint, self.instance.t0, start)
         return max(abs(value), float(np.abs(gradient) @ self.sizes), 1e-300)
 
     def moved(self, at: Unknowns, step: Array) -> Unknowns:
-        """Unknowns after a step in units of :attr:`scale`."""
+        """Return the unknowns after a step in units of :attr:`scale`."""
         n, k = len(at.costates), len(at.times)
         change = step * self.scale
         end = at.end + float(change[n + k]) if self.free_time else at.end
@@ -138,7 +140,7 @@ class Equations:
         return replace(at, costates=at.costates + change[:n], times=at.times + change[n : n + k], end=end)
 
     def _end(self, at: Unknowns, last: Arc) -> tuple[Array, Array]:
-        """Rows of the generated boundary function, with the control of the last arc kept."""
+        """Return the residuals of the generated boundary function with the control of the last arc, and derivatives."""
         instance, n = self.instance, len(self.instance.initial)
         model, z = instance.model, last.after.tolist()
         point = (at.end, tuple(z[:n]), tuple(z[n:]), tuple(at.multipliers))
@@ -160,12 +162,12 @@ class Equations:
         return residual / rows, together / rows[:, None]
 
     def _known(self, row: Array) -> Array:
-        """Derivatives without those by a final time that is given."""
+        """Return derivatives without those by a given final time."""
         place = len(self.instance.initial) + self.structure.switches
         return row if self.free_time else np.delete(row, place, axis=-1)
 
     def _junction(self, at: Unknowns, before: Arc, after: Arc) -> list[tuple[float, Array]]:
-        """What must vanish between two arcs: the gap at a stop, or what a switch asks for."""
+        """Return the conditions between two arcs: the gap at a restart, or the conditions of a switch."""
         if before.stop is None:
             return self._switch(at, before, after)
         slopes, size = before.slopes.copy(), len(self.sizes)
@@ -175,7 +177,7 @@ class Equations:
         return list(zip(gap.tolist(), slopes / self.sizes[:, None], strict=True))
 
     def _switch(self, at: Unknowns, before: Arc, after: Arc) -> list[tuple[float, Array]]:
-        """What must vanish at a switch: nothing where a singular arc ends, or one on a boundary that does not jump."""
+        """Return the conditions of a switch; none at the end of singular arcs and boundary arcs without jump."""
         event = before.event
         assert event is not None
         i = event.control
@@ -202,7 +204,7 @@ class Equations:
         return rows
 
     def _after_jump(self, at: Unknowns, switch: _Switch, before: Arc, after: Arc) -> _Switch:
-        """The switch as the next arc has it."""
+        """Return the switch with the values after a jump, as the next arc sees it."""
         later = replace(switch, field=after.field, t=after.start, z=after.before.tolist())
         for k, (control, number, constraint) in enumerate(self.structure.jumps):
             assert before.event is not None
@@ -215,7 +217,7 @@ class Equations:
         return later
 
     def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
-        """What must vanish at the start of a singular arc that begins everything, or of one on a boundary."""
+        """Return the conditions at the start of a first arc that is singular or on a boundary."""
         kept = first.field.kept
         if kept is None:
             return []
@@ -233,20 +235,20 @@ class Equations:
 
 @dataclass(frozen=True, eq=False)
 class _Switch:
-    """Where a control switches, and how that moves with the unknowns."""
+    """A switch of a control, and its derivatives by the unknowns."""
 
     field: Field
     t: float
     z: list[float]
-    """The equations of an arc beside it, its time, and states and costates there."""
+    """Equations of an adjacent arc, the time, and states and costates there."""
     slopes: Array
-    """Derivatives of these by all unknowns, shape (2n, v)."""
+    """Derivatives of the states and costates by all unknowns, shape (2n, v)."""
     control: int
     column: int | None
-    """Which control, and the place of the time among the switching times; ``None`` where it is no unknown."""
+    """Index of the control, and position of the time among the switching times; ``None`` if it is not unknown."""
 
     def row(self, levels: tuple[int, int], sizes: Array) -> tuple[float, Array]:
-        """The switching function minus its value at such a switch, by the unknowns; in units of its own size."""
+        """Return the scaled switching condition between two levels, and its derivatives by the unknowns."""
         field, place = self.field, (self.t, self.z, self.control)
         ratio = field.ratio(self.control, levels)
         target = ratio * field.weight(*place) if ratio else 0.0
@@ -255,7 +257,7 @@ class _Switch:
         return value / size, self._moving(field.passing_gradient(*place, ratio), rate) / size
 
     def rate_row(self, sizes: Array) -> tuple[float, Array]:
-        """The rate of the switching function, by the unknowns; in units of its own size."""
+        """Return the scaled rate of the switching function, and its derivatives by the unknowns."""
         field, place = self.field, (self.t, self.z, self.control)
         gradient = field.rate_gradient(*place)
         _, rate = field.switching(*place)
@@ -265,13 +267,13 @@ class _Switch:
     def vanishing_row(
         self, value: float, gradient: Array, by_time: float, sizes: Array | None = None
     ) -> tuple[float, Array]:
-        """A function of states and time, by the unknowns; in units of its own size, or as it is."""
+        """Return a function of states and time, scaled if ``sizes`` are given, and its derivatives by the unknowns."""
         size = 1.0 if sizes is None else max(float(np.abs(gradient) @ sizes), 1e-300)
         rate = by_time + float(gradient @ np.array(self.field.rates(self.t, self.z)))
         return value / size, self._moving(gradient, rate) / size
 
     def _moving(self, gradient: Array, rate: float) -> Array:
-        """The derivative of a function of time and z whose time moves with an unknown, by all unknowns."""
+        """Return derivatives by all unknowns of a function of time and z whose time is an unknown."""
         row = gradient @ self.slopes
         if self.column is not None:
             place = len(self.z) // 2 + self.column
@@ -280,12 +282,12 @@ class _Switch:
 
 
 def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float], None] | None = None) -> Refined | None:
-    """Newton's method, undamped but for large moves; ``None`` where it leads nowhere.
+    """Solve the equations by Newton's method, damped for large steps only; ``None`` if the iteration fails.
 
     Parameters
     ----------
     watch
-        Told the size of each correction, and NaN for the cost, which is not known on the way.
+        Function that is told NaN for the cost, which is not known yet, and the size of each correction.
     """
     at, seen = start, [float("inf")]
     for iteration in range(1, MOST_STEPS + 1):
@@ -320,7 +322,7 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
 
 
 def _too_slow(seen: list[float]) -> bool:
-    """Whether corrections shrink evenly, as where an arc vanishes, and cannot settle in those that are left."""
+    """Return whether corrections decrease evenly, as if an arc vanishes, and too slowly to converge in time."""
     if len(seen) < STEADY + 2 or not SETTLED_CORRECTION <= seen[-1] < NEAR_CORRECTION:  # none came before the first
         return False
     factors = [after / before for before, after in pairwise(seen[-STEADY - 1 :])]
@@ -334,7 +336,7 @@ def _least_squares(matrix: Array, right: Array) -> Array:
 
 
 def _resized(sizes: Array, arcs: list[Arc]) -> Array:
-    """Sizes of costates as the arcs show them; those of states stay."""
+    """Return scales with those of the costates updated from the arcs; those of the states are unchanged."""
     n = len(sizes) // 2
     seen = np.max([np.abs(arc.after[n:]) for arc in arcs] + [np.abs(arcs[0].before[n:])], axis=0)
     cost = float((sizes[:n] * seen).max())

@@ -1,4 +1,4 @@
-"""Method "bang-bang": from a cold start to exact arcs and switching times."""
+"""Method "bang-bang": exact arcs and switching times from a cold start."""
 
 from __future__ import annotations
 
@@ -25,28 +25,28 @@ from satsym.solvers.switching.structure import REST, Course, Guess, Structure
 from satsym.status import BadInput, Status
 
 NOT_FOUND = "no extremal found: no start of the search leads to one"
-"""What is said where that is all that is known."""
+"""Message if nothing else is known about a failure."""
 
 SHORTFALL = 1e-9
-"""By this share of it a given time may fall short of the least."""
+"""Relative amount by which a given final time may fall short of the minimum time."""
 
 LONGER, UNKNOWN = (1.3, 1.7, 2.5), (1.3, 2.5, 5.0, 10.0)
-"""Durations in which infinitely many switches are looked for, relative to one that was found, and to that of a coarse
-motion where none was."""
+"""Durations in which infinitely many switches are looked for, relative to a duration that was found, and to that of a
+motion on a coarse mesh if none was found."""
 
 
 @dataclass(frozen=True)
 class Search:
-    """The direct search, as it is asked where by reachable sets nothing is found.
+    """The direct search, which is used if the reachable set does not give a solution.
 
     Attributes
     ----------
     arcs
-        Finds exact arcs from a cold start.
+        Function that finds exact arcs from a cold start.
     motion
-        Finds a motion on a coarse mesh that is nearly the cheapest, with its costates.
+        Function that finds a motion of nearly minimum cost on a coarse mesh, with its costates.
     why
-        The status where there are none, and a message.
+        Function that returns status and message if no arcs are found.
     """
 
     arcs: Callable[[Instance, Limits], Exact | None]
@@ -60,21 +60,21 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
     Parameters
     ----------
     instance
-        Of a model whose controls enter the Hamiltonian affinely, with both bounds for each.
+        Instance of a model whose controls enter the Hamiltonian affinely, with both bounds for each.
     progress
-        Called after each step of the continuation, and each attempt at exact arcs.
+        Function that is called after each step of the continuation, and each attempt at exact arcs.
     search
-        What is asked where controls do not chatter, and where they may for a motion to begin with.
+        The direct search: it finds exact arcs, or an initial motion if controls may chatter.
 
     Returns
     -------
     Solution
-        Times hold each switching time twice: the last instant of one arc and the first of the next.
+        Solution whose times contain each switching time twice: as the last time of one arc and the first of the next.
 
     Raises
     ------
     BadInput
-        If a bound is missing, or the motion starts where it is to end.
+        If a bound is missing, or the initial state satisfies the final conditions.
     """
     refuse(instance)
     began = time.perf_counter()
@@ -95,13 +95,13 @@ def solve(instance: Instance, progress: Progress | None, search: Search) -> Solu
 
 
 def _finished(instance: Instance, found: Exact, limits: Limits, history: list[Iteration], began: float) -> Solution:
-    """The answer, whose cost is told last: on the way other problems were solved, and other arcs."""
+    """Return the answer, and report its cost last, since costs of other problems and arcs were reported before."""
     limits.tell(found.trajectory.cost(instance), found.refined.residual)
     return answered(instance, found, tuple(history), began)
 
 
 def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits, search: Search) -> Solution | None:
-    """What infinitely many switches lead to; where the final time is free, in a longer one if that is cheaper."""
+    """Return the solution with infinitely many switches, or ``None``; a free time is increased if this is cheaper."""
     if not instance.model.spec.chattering:
         return None
     if isinstance(found, homotopy.Stopped) and found.chattering:
@@ -133,9 +133,10 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
 def _by_least_time(
     instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search
 ) -> Exact | homotopy.Stopped:
-    """What the least time says: a structure where the given one is hardly longer, or that it is too short.
+    """Return arcs from the structure of minimum time, or the failure with the minimum time in its message.
 
-    The latter where the motion is linear: only there is it known that nothing arrives earlier.
+    The structure is used if the given time is hardly longer. For linear motions, a longer minimum time proves that the
+    given time is too short; for others earlier arrivals cannot be excluded.
     """
     hurried = minimum_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
     found = _found(hurried, limits, search) if hurried is not None else stopped
@@ -159,7 +160,7 @@ def _by_least_time(
 
 
 def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, search: Search) -> homotopy.Stopped:
-    """Why there is no answer: where the final time is given, perhaps that no control arrives."""
+    """Return the failure with the reason that the search finds, for example that no control reaches the end."""
     if stopped.status is not Status.NOT_CONVERGED:
         return stopped
     status, message = search.why(instance, limits)
@@ -168,7 +169,7 @@ def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, se
 
 
 def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
-    """The failure with advice where magnitudes cost: singular arcs are recognised only without a weight."""
+    """Return the failure with advice if magnitudes have a cost, since singular arcs are only found without them."""
     if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
     advice = (
@@ -179,7 +180,7 @@ def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
 
 
 def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homotopy.Stopped:
-    """Exact arcs, or why there are none."""
+    """Return exact arcs, or why none were found."""
     resting = _resting(instance)
     found = attempt(instance, resting, limits) if resting else None
     if found is not None:
@@ -194,7 +195,7 @@ def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homoto
 
 
 def _resting(instance: Instance) -> Guess | None:
-    """No control at all, nor costates, where every |u| costs: the answer if the motion arrives by itself."""
+    """Return a guess of zero controls and costates if every |u| has a cost and the time is given, else ``None``."""
     weights = costs(instance)
     if instance.tf is None or not all(weight > 0.0 for weight in weights):
         return None
@@ -203,7 +204,7 @@ def _resting(instance: Instance) -> Guess | None:
 
 
 def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
-    """The structure of the minimum time with a short rest at each switch, where |u| costs and some time is left."""
+    """Return the structure of minimum time with a short rest at each switch of controls whose magnitude costs."""
     at, structure = hurried.refined.at, hurried.refined.structure
     assert instance.tf is not None
     spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)
@@ -225,13 +226,13 @@ def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
 
 
 def refuse(instance: Instance) -> None:
-    """Refuse an instance that is no switching problem which could be solved, before anything is solved.
+    """Refuse an instance that is no solvable switching problem, before any computation.
 
     Raises
     ------
     BadInput
-        If a bound is missing, if no control is left to choose, if nothing costs anything, or if the motion starts
-        where it is to end.
+        If a bound is missing, if no control can be chosen, if nothing has a cost, or if the initial state satisfies the
+        final conditions.
     """
     names = instance.model.spec.control_names
     for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
@@ -257,7 +258,7 @@ def refuse(instance: Instance) -> None:
 
 
 def _free_of_charge(instance: Instance) -> bool:
-    """Whether neither control nor state cost anything, as far as random states show."""
+    """Return whether neither controls nor states have a cost, tested at random states."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     rng = np.random.default_rng(0)
     assert instance.tf is not None
@@ -275,7 +276,7 @@ def _free_of_charge(instance: Instance) -> bool:
 
 
 def _there(instance: Instance) -> bool:
-    """Whether every given final state is the initial one."""
+    """Return whether the initial state has all given final values."""
     for name, x in zip(instance.model.spec.state_names, instance.initial, strict=True):
         wanted = instance.final.get(name)
         if isinstance(wanted, str) or (wanted is not None and abs(wanted - x) > 1e-12 * max(abs(wanted), abs(x))):
@@ -284,14 +285,14 @@ def _there(instance: Instance) -> bool:
 
 
 def _smoothed(instance: Instance, course: Course | None, limits: Limits) -> Exact | homotopy.Stopped:
-    """Exact arcs whose structure is recognised in regularised extremals, less and less smoothed, or why there are none.
+    """Return exact arcs whose structure is recognised in regularised extremals, or why none were found.
 
     Parameters
     ----------
     instance
-        Of which a control may chatter.
+        Instance with a control that may chatter.
     course
-        A motion near which the first smoothed extremal is looked for.
+        Motion near which the first smoothed extremal is searched for.
     """
     if course is None:
         return homotopy.Stopped(Status.NOT_CONVERGED, "")

@@ -1,8 +1,8 @@
-"""Where arcs begin anew: as often as the growth of their flow asks for, along something near an extremal.
+"""Restarts of arcs (stops), as many as the growth of errors along a course near an extremal requires.
 
-Along a long singular arc, or beside an unstable motion, initial values that are nearly right lead anywhere: Newton's
-method for one flow from the start to the end diverges. Between stops, whose values are unknowns, deviations grow little
-(multiple shooting: Bulirsch and Stoer, Introduction to Numerical Analysis, 7.3.5).
+Along a long singular arc, or in an unstable motion, nearly correct initial values lead to a large miss, and Newton's
+method for a single flow diverges. Between stops, whose values are unknowns, deviations grow little (multiple shooting:
+Bulirsch and Stoer, Introduction to Numerical Analysis, 7.3.5).
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from satsym.solvers.switching.structure import Course, Guess
 from satsym.solvers.switching.throttled import equations
 
 GROWS = 30.0
-"""By so much deviations may grow between stops."""
+"""Largest growth of deviations between two stops."""
 
 HALVINGS = 5
-"""Halvings of an arc at most: what grows in so small a part as well is no flow that stops would tame."""
+"""Maximum number of bisections of an arc. If deviations still grow too much, stops do not help and none are set."""
 
 
 def stops(instance: Instance, at: Guess, course: Course, sizes: Array) -> tuple[tuple[Stop, ...], tuple[float, ...]]:
-    """Places of stops and their times; none where flows grow little, or without end.
+    """Return the stops and their times; none if deviations grow little, or without limit.
 
     Parameters
     ----------
     instance, at
-        The structure of what problem, and its times.
+        The instance, and the structure with its switching times.
     course
-        Where it leads, roughly.
+        Approximate states and costates along the motion.
     sizes
-        Of states and costates, in which growth is measured, shape (2n,).
+        Scales of states and costates, in which growth is measured, shape (2n,).
     """
     found: list[Stop] = []
     times: list[float] = []
@@ -53,7 +53,7 @@ def stops(instance: Instance, at: Guess, course: Course, sizes: Array) -> tuple[
 
 
 def _shares(field: Field, start: float, end: float, course: Course, sizes: Array) -> list[float] | None:
-    """Shares of an arc after which it begins anew: halved until no part grows more than it may, ``None`` if in vain."""
+    """Return fractions of an arc at which it restarts, by bisection; ``None`` if deviations always grow too much."""
     kept, parts = [0.0], [(0.0, 1.0, HALVINGS)]
     while parts:
         low, high, halvings = parts.pop()

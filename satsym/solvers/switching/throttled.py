@@ -1,8 +1,9 @@
-"""Extremal equations where vectors are throttled, or controls in a product of sets switch one by one.
+"""Extremal equations for vectors with throttled norms, and for controls that switch in a product of control sets.
 
-H falls along the best direction of such a vector by what a generated function says; where that changes its sign the
-norm switches between its bounds, and so does a single control where the slope of H by it does. On an arc each of them
-keeps its level, and what is left follows the costates: the canonical equations with these levels.
+A generated function gives the derivative of H with respect to the norm along the best direction of such a vector; where
+it changes its sign, the norm switches between its bounds, and so does a single control where its derivative of H does.
+On an arc each of them keeps its level, and the other controls follow the costates: these are the canonical equations
+with fixed levels.
 """
 
 from __future__ import annotations
@@ -20,14 +21,15 @@ from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import BOUNDARY
 
 NOTHING = 1e-300
-"""A level that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
+"""Level in place of zero: exactly at a switch the deciding margin is zero as well, and must not be equal to the
+level."""
 
 ON_BOUND = 1e-12
-"""Distance from a bound at which a control is on it."""
+"""Distance from a bound below which a control counts as being at the bound."""
 
 
 class ThrottledField(Field):
-    """Rates of states and costates while every norm and control that switches keeps its level; see :class:`Field`."""
+    """Rates of states and costates while every switching norm and control keeps its level; see :class:`Field`."""
 
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
         super().__init__(instance, levels)
@@ -60,7 +62,7 @@ class ThrottledField(Field):
         return np.array(self.rates(t, z)), np.array(slopes).reshape(2 * self.n, 2 * self.n)
 
     def drift(self, t: float, z: list[float]) -> tuple[float, ...]:
-        """The rates of states and costates by explicit time."""
+        """Return derivatives of the rates of states and costates by explicit time."""
         return tuple(self.model.canonical_drift(t, z[: self.n], z[self.n :], self.p, self.arguments))
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
@@ -89,7 +91,7 @@ class ThrottledField(Field):
         return np.zeros(2 * self.n), 0.0
 
     def _slopes(self, t: float, z: list[float], control: int) -> Array:
-        """A switching function by states, costates and explicit time, shape (2n + 1,)."""
+        """Return derivatives of a switching function by states, costates and explicit time, shape (2n + 1,)."""
         columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(2 * self.n + 1)
         x, lam = columns[: self.n], columns[self.n : -1]
         found = np.asarray(self.model.throttle_slope_batch(columns[-1], x, lam, self.p, self.arguments))
@@ -97,14 +99,14 @@ class ThrottledField(Field):
 
 
 def equations(instance: Instance, levels: tuple[int, ...]) -> Field:
-    """The equations of an arc."""
+    """Return the equations of an arc with the given levels."""
     if max(levels) >= BOUNDARY:
         return BoundaryField(instance, levels)
     return (ThrottledField if instance.model.spec.throttled else Field)(instance, levels)
 
 
 def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Array]:
-    """Switching functions, and weights of magnitudes, none negative, at many points, shapes (r, N)."""
+    """Return switching functions and nonnegative weights of magnitudes at many points, shapes (r, N)."""
     model, p = instance.model, instance.parameters
     if model.spec.throttled:
         sigma = np.asarray(model.throttle_slope_batch(t, x, lam, p, instance.control_set.arguments))
@@ -114,7 +116,7 @@ def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Ar
 
 
 def switched(instance: Instance, u: Array) -> Array:
-    """What switches: the controls, or of a product of sets single controls and norms of vectors; shape (r, N)."""
+    """Return the switching quantities: controls or, in products of sets, single controls and norms, shape (r, N)."""
     if not instance.model.spec.throttled:
         return u
 
@@ -125,7 +127,7 @@ def switched(instance: Instance, u: Array) -> Array:
 
 
 def by_control(instance: Instance, times: list[tuple[float, ...]]) -> tuple[tuple[float, ...], ...]:
-    """Switching times of each control, from those of what switches."""
+    """Return the switching times of each control, from those of the switching quantities."""
     if not instance.model.spec.throttled:
         return tuple(times)
     throttled = [places for places, part in instance.control_set.parts if part.throttled]
@@ -134,14 +136,14 @@ def by_control(instance: Instance, times: list[tuple[float, ...]]) -> tuple[tupl
 
 
 def shown_by(instance: Instance) -> list[int]:
-    """For each of what switches a control that has its switching times."""
+    """Return for each switching quantity the index of a control that has its switching times."""
     if not instance.model.spec.throttled:
         return list(range(len(instance.lower)))
     return [places[0] for places, part in instance.control_set.parts if part.throttled]
 
 
 def resting(instance: Instance) -> tuple[bool, ...]:
-    """Which of what switches may best be at rest for a while."""
+    """Return for each switching quantity whether it can optimally be at rest."""
     if instance.model.spec.throttled:
         return (False,) * len(instance.control_set.switching[0])
     return magnitudes.resting(instance)

@@ -1,4 +1,4 @@
-"""An extremal of exact arcs at many times, its cost, and whether the control minimises H all along."""
+"""Values of an extremal of exact arcs at many times, its cost, and a test whether the control minimises H."""
 
 from __future__ import annotations
 
@@ -16,31 +16,33 @@ from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
 from satsym.solvers.switching.throttled import signs
 
 PANELS, POINTS = 20, 8
-"""Panels of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""
+"""Number of panels of a whole trajectory, and of Gauss points in each panel, at which cost and switching functions are
+evaluated."""
 
 NEAR_ENDS = np.geomspace(1e-6, 1e-2, 9)
-"""Shares of an arc after its start and before its end at which its switching functions are looked at as well: where one
-vanishes there, it may have the wrong sign for a moment only."""
+"""Fractions of an arc after its start and before its end at which switching functions are evaluated as well. If one
+vanishes at an end, it may have the wrong sign for a short time only."""
 
 
 DECIDING = 1e-3
-"""Share of what another control decides on, with which a switching function that is always smaller is compared."""
+"""Minimum scale of a switching function, relative to the largest effect on H of any control."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """An extremal arc by arc."""
+    """An extremal of exact arcs, with interpolation data."""
 
     arcs: list[Arc]
     """Exact arcs that have a length."""
     stations: list[tuple[Array, Array, int]]
-    """Starts of the integrator's steps on each arc, times (S,) and values (2n, S), and the columns they need."""
+    """For each arc: times (S,) and values (2n, S) at the starts of the integration steps, and the number of columns of
+    the extrapolation table."""
     points: list[tuple[Array, Array, Array, Array]]
-    """Gauss points of each arc, shape (N,), with their weights, values (2n, N) and controls (m, N) there."""
+    """For each arc: Gauss points, shape (N,), with their weights, values (2n, N) and controls (m, N)."""
 
     @classmethod
     def of(cls, arcs: list[Arc], sizes: Array) -> Trajectory:
-        """Integrate along each arc that has a length."""
+        """Return the trajectory of all arcs that have a length."""
         kept = [arc for arc in arcs if arc.end > arc.start]
         whole = sum(arc.end - arc.start for arc in kept)
         bare = cls(kept, [_stations(arc, sizes) for arc in kept], [])
@@ -48,7 +50,7 @@ class Trajectory:
         return replace(bare, points=[(*panel, *bare.at(k, panel[0])) for k, panel in enumerate(panels)])
 
     def at(self, which: int, times: Array) -> tuple[Array, Array]:
-        """Values (2n, N) and controls (m, N) on an arc, at increasing times within it."""
+        """Return values (2n, N) and controls (m, N) at increasing times on an arc."""
         field = self.arcs[which].field
         known, values, columns = self.stations[which]
         step = np.maximum(np.searchsorted(known, times, side="right") - 1, 0)
@@ -58,7 +60,7 @@ class Trajectory:
 
     @property
     def looked_at(self) -> list[tuple[Array, Array]]:
-        """Times of each arc, shape (N,), and values (2n, N): Gauss points, ends, and what is next to these."""
+        """Return times, shape (N,), and values (2n, N) on each arc: at Gauss points, at and near the ends."""
         tables = []
         for which, (arc, (inside, _, values, _)) in enumerate(zip(self.arcs, self.points, strict=True)):
             near = NEAR_ENDS * (arc.end - arc.start)
@@ -70,7 +72,7 @@ class Trajectory:
         return tables
 
     def cost(self, instance: Instance) -> float:
-        """The running cost, by Gauss's rule, and the terminal cost."""
+        """Return the running cost by Gauss quadrature plus the terminal cost."""
         model, p, n = instance.model, instance.parameters, len(instance.initial)
         total = 0.0
         for times, weights, z, u in self.points:
@@ -79,17 +81,17 @@ class Trajectory:
         return total + float(model.terminal_cost(self.arcs[-1].end, end, p))
 
     def grid(self, nodes: Array) -> tuple[Array, Array, Array]:
-        """Times, values and controls at given times and on both sides of every switch.
+        """Return times, values and controls at given times and on both sides of every switch.
 
         Parameters
         ----------
         nodes
-            Increasing, from the start to the end.
+            Increasing times, from the start to the end.
 
         Returns
         -------
         times : (M,)
-            With each switching time twice: first as the end of one arc, then as the start of the next.
+            The times, with each switching time twice: as the end of one arc and as the start of the next.
         values : (2n, M)
         controls : (m, M)
         """
@@ -106,25 +108,25 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Violation:
-    """Where a control does not minimise H, or leaves its bounds on a singular arc."""
+    """An interval on which a control does not minimise H, or leaves its bounds on a singular arc."""
 
     control: int
     arc: int
-    """Which control, and which of the arcs between any switches."""
+    """Index of the control, and index of the arc between switches of any control."""
     start: float
     end: float
-    """The times between which another level would be better."""
+    """Times between which another level would be better."""
     level: int
-    """The level that would be better."""
+    """The better level."""
     amount: float
-    """How far the switching function is on the wrong side, relative to its largest value; or how far the control is
-    beyond its bounds, relative to the distance between them."""
+    """Excess of the switching function on the wrong side, relative to its largest value; or of the control beyond its
+    bounds, relative to their distance."""
     beyond: bool = False
-    """Whether it is beyond them."""
+    """Whether the control is beyond its bounds."""
 
 
 def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
-    """All stretches on which a control is not at the level that minimises H, or beyond its bounds."""
+    """Return all intervals on which a control is not at the level that minimises H, or beyond its bounds."""
     n, instance = trajectory.arcs[0].field.n, trajectory.arcs[0].field.instance
     tables = [(times, z, *signs(instance, times, z[:n], z[n:])) for times, z in trajectory.looked_at]
     largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for *_, sigma, weight in tables], axis=0)
@@ -147,12 +149,12 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
 
 
 def deciding(instance: Instance, sizes: Array) -> Array:
-    """For each control the switching function with which it would decide on as much as any does, shape (m,).
+    """Return the switching-function values with which each control would affect H as much as any, shape (m,).
 
     Parameters
     ----------
     sizes
-        Of all switching functions, shape (m,).
+        Magnitudes of all switching functions, shape (m,).
     """
     low, high = map(np.array, instance.control_set.switching)
     room = np.maximum(high - low, 1e-300)
@@ -160,14 +162,14 @@ def deciding(instance: Instance, sizes: Array) -> Array:
 
 
 def _worse(sigma: Array, weight: Array, level: int, slack: float) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
-    """The level that a switching function asks for, where it is not that of the control, and by how much."""
+    """Return the level that minimises H, whether the control's level is wrong, and the margin."""
     wrong = np.where(sigma > weight + slack, LOWER, np.where(sigma < -weight - slack, UPPER, REST))
     inside = np.abs(sigma) < weight - slack
     return wrong, (wrong != REST) & (wrong != level) | inside & (level != REST), np.abs(np.abs(sigma) - weight)
 
 
 def _beyond(arc: Arc, times: Array, z: Array, control: int) -> tuple[NDArray[np.int64], Array]:
-    """The bound that is nearer to a singular control, and by how much it is beyond, relative to the box."""
+    """Return the bound nearer to a singular control, and the excess of the control beyond it, relative to the box."""
     low, high = arc.field.instance.lower[control], arc.field.instance.upper[control]
     u = arc.field.along(times, z)[0][control]
     excess = np.maximum(low - u, u - high) / (high - low)
@@ -175,13 +177,13 @@ def _beyond(arc: Arc, times: Array, z: Array, control: int) -> tuple[NDArray[np.
 
 
 def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last index of each run of true values."""
+    """Return first and last index of each run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _stations(arc: Arc, sizes: Array) -> tuple[Array, Array, int]:
-    """Starts of the integrator's steps: a step that is no longer is no less accurate."""
+    """Return the starts of the integrator's steps on an arc, from which interpolation is as accurate as the steps."""
     field = arc.field
 
     def rates(t: float, y: Array) -> Array:
@@ -192,7 +194,7 @@ def _stations(arc: Arc, sizes: Array) -> tuple[Array, Array, int]:
 
 
 def _panels(arc: Arc, whole: float) -> tuple[Array, Array]:
-    """Gauss points of the panels of an arc, and their weights."""
+    """Return the Gauss points of the panels of an arc, and their weights."""
     count = max(2, int(np.ceil(PANELS * (arc.end - arc.start) / whole)))
     edges = np.linspace(arc.start, arc.end, count + 1)
     gauss = scheme(POINTS)

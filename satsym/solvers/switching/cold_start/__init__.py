@@ -1,1 +1,1 @@
-"""Where structures come from when nothing is known: regularised problems, drawn controls, saturated starts."""
+"""Structures of switching problems without an initial guess, recognised in regularised problems."""

@@ -1,7 +1,7 @@
-"""From a motion that the search finds to smoothed extremals, less and less smoothed.
+"""Continuation from a motion of the direct search to extremals of regularised problems with decreasing smoothing.
 
-The most smoothed one that Newton's method finds from the motion is the first; then the smoothing is taken away, each
-step starting from the last solution.
+It begins with the strongest smoothing for which Newton's method finds an extremal from the motion; each step then
+starts from the previous solution.
 """
 
 from __future__ import annotations
@@ -30,39 +30,40 @@ from satsym.solvers.switching.structure import Course
 from satsym.status import Status
 
 MOST_SMOOTHED = 4.0**6
-"""Multiple of the smoothing that costs as much as all else, with which it begins: controls then hardly meet bounds."""
+"""First smoothing parameter, as a multiple of that for which the quadratic cost equals all other costs; controls then
+hardly reach their bounds."""
 
 LEVELS, TIGHTER = 12, 4.0
-"""Levels of smoothing, and the factor by which less is smoothed at each of them."""
+"""Number of levels of smoothing, and the factor between the smoothing parameters of successive levels."""
 
 FINER = 1e-6
-"""Error that is left where the next level is not reached from what is solved roughly."""
+"""Error of a more accurate solution, from which the next level is tried again after a failure."""
 
 BACK = 2
-"""Levels before the last one from which it is tried again where that does not lead on."""
+"""Number of earlier levels from which the next level is tried again after a failure."""
 
 SPLIT = 2, 4
-"""Into so many parts intervals are split where more accuracy does not lead on."""
+"""Numbers of parts into which intervals are divided, one after the other, if more accuracy does not help."""
 
 MOST_SPLIT = 500
-"""Most intervals of such a mesh."""
+"""Maximum number of intervals of a divided mesh."""
 
 FOLLOWED = 5
-"""Corrections that a step of the continuation usually takes, as its work is counted."""
+"""Typical number of corrections in a step of the continuation, by which its work is counted."""
 
 ROUGHLY = 1e-5
-"""Accuracy of solutions on the way."""
+"""Accuracy of intermediate solutions."""
 
 SHORTEST = 1.0 / 256.0
-"""Shortest step of the continuation, as a share of the way."""
+"""Smallest step of the continuation, as a fraction of the path."""
 
 MOST_INTERVALS = 60
-"""Intervals of the mesh on the way, about."""
+"""Approximate maximum number of intervals of the mesh during the continuation."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """A smoothed extremal."""
+    """An extremal of a regularised problem."""
 
     problem: TwoPoint
     curve: Curve
@@ -71,33 +72,33 @@ class Smoothed:
 
 @dataclass(frozen=True)
 class Stopped(Exception):
-    """The path from a motion to the problem ends early."""
+    """Raised if the continuation from a motion to the original problem cannot be completed."""
 
     status: Status
     message: str
-    """What came of it."""
+    """Status and message of the result."""
     chattering: tuple[Smoothed, ...] = ()
-    """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
+    """All regularised problems that were solved, the least smoothed last, if they show infinitely many switches."""
 
 
 def path(instance: Instance, course: Course, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
-    """Smoothed extremals near a motion, less and less smoothed, that many times.
+    """Yield extremals of regularised problems near a motion, with decreasing smoothing.
 
     Parameters
     ----------
     course
-        States and costates of a motion that is nearly the cheapest.
+        States and costates of a motion of nearly minimum cost.
 
     Raises
     ------
     Stopped
-        Where there is none, or the way to less smoothing is blocked.
+        If no extremal is found, or smoothing cannot be reduced further.
     """
     yield from less_and_less(instance, _near(instance, course, limits), limits, most)
 
 
 def _near(instance: Instance, course: Course, limits: Limits) -> Smoothed:
-    """The most smoothed extremal that Newton's method finds from a motion."""
+    """Return the extremal with the strongest smoothing that Newton's method finds from a motion."""
     lasting = float(np.ptp(course.times))
     tau, smoothing = (course.times - course.times[0]) / lasting, MOST_SMOOTHED * first_smoothing(instance, course)
     for _ in range(LEVELS):
@@ -118,12 +119,12 @@ def _itself(problem: TwoPoint, _: float) -> TwoPoint:
 
 
 def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
-    """A smoothed extremal, and then so many others, less and less smoothed.
+    """Yield a smoothed extremal, and then a given number of extremals with decreasing smoothing.
 
     Raises
     ------
     Stopped
-        Where that does not go on.
+        If smoothing cannot be reduced further.
     """
     passed = [first]
     yield first
@@ -150,7 +151,7 @@ def _less(one: Smoothed, than: Smoothed) -> bool:
 def _sharper(
     instance: Instance, near: Smoothed, wanted: float, limits: Limits, most: int = MOST_INTERVALS
 ) -> Smoothed | None:
-    """A less smoothed extremal, as far towards what is wanted as one leads there; ``None`` where that fails."""
+    """Return an extremal with less smoothing, as close to the desired value as possible; ``None`` on failure."""
     begun = near.problem.control_set.smoothing
 
     def sharper(fraction: float) -> TwoPoint:
@@ -161,9 +162,9 @@ def _sharper(
 
 
 def _finer(near: Smoothed) -> Iterator[Smoothed]:
-    """The extremal more accurately: what is smoothed less changes ever more quickly where bounds end.
+    """Yield more accurate versions of an extremal: with less smoothing, rates change faster at the ends of bound arcs.
 
-    Corners that are near each other may lie too close for the intervals of a mesh; so meshes with more are tried.
+    Neighbouring corners may be too close for the intervals of a mesh, so that finer meshes are tried as well.
     """
     problem, curve = near.problem, near.curve
     found = refine(problem, curve, FINER, keep_nodes=True)
@@ -177,7 +178,7 @@ def _finer(near: Smoothed) -> Iterator[Smoothed]:
 
 
 def first_smoothing(instance: Instance, course: Course) -> float:
-    """The smoothing at which the largest control costs about as much again as time, state, |u| and the end do."""
+    """Return the smoothing at which the largest control costs about as much again as all other terms together."""
     m = len(instance.lower)
     largest = [max(abs(low), abs(high)) for low, high in zip(instance.lower, instance.upper, strict=True)]
     cost = max(abs(cost_rate(instance, np.array(u))) for u in (instance.lower, instance.upper, (0.0,) * m))
@@ -187,7 +188,7 @@ def first_smoothing(instance: Instance, course: Course) -> float:
 
 
 def _mean_cost(instance: Instance, course: Course) -> float:
-    """What time and state cost in the mean along a motion under no control, where they cost nothing at first."""
+    """Return the mean running cost of a motion with controls at rest, for problems without a cost at the start."""
     n, count = len(instance.initial), len(course.times)
     idle = np.repeat(np.array(instance.control_set.rest)[:, None], count, axis=1)
     running = instance.model.running_cost_batch(course.times, course.z[:n], idle, instance.parameters)
@@ -202,25 +203,25 @@ def _follow(
     shortest: float = SHORTEST,
     most: int = MOST_INTERVALS,
 ) -> tuple[Curve, float]:
-    """Follow the solutions of a family of problems from its start to its end, as far as that goes.
+    """Follow the solutions of a family of problems from its start as far as possible.
 
-    Each solution is the guess of the next; steps are halved where Newton's method fails.
+    Each solution is the initial guess of the next; steps are halved where Newton's method fails.
 
     Parameters
     ----------
     problem
-        The one at a share of the way.
+        Function that returns the problem at a fraction of the path.
     curve
-        A solution at the start.
+        Solution at the start of the path.
     shortest
-        Step below which it is given up, as a share of the way.
+        Step, as a fraction of the path, below which the continuation ends.
     most
-        Intervals of the mesh, about.
+        Approximate maximum number of mesh intervals.
 
     Returns
     -------
     curve, reached
-        The last one, and the share of the way at which it is.
+        The last solution, and the fraction of the path that was reached.
     """
     at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, most))
     while at < 1.0 and move >= shortest and not limits.expired:

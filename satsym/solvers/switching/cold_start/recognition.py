@@ -1,4 +1,4 @@
-"""Which structure a smoothed extremal has: bounds, coasts and singular arcs, told from its switching functions."""
+"""Recognition of the structure of a smoothed extremal (bound, coast and singular arcs) from its switching functions."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Cou
 from satsym.solvers.switching.throttled import signs
 
 SAMPLES = 12
-"""Points in each interval of a mesh at which switching functions are looked at."""
+"""Number of points in each mesh interval at which switching functions are evaluated."""
 
 FAINT_FUNCTION = 1e-9
-"""Share of its size at which a switching function is as good as none."""
+"""Magnitude of a switching function, relative to its largest value, below which it counts as zero."""
 
 LONG_ARC = 0.02
-"""Share of the duration that a singular arc has at least; shorter ones are switches that are smoothed."""
+"""Minimum length of a singular arc, relative to the duration; shorter ones are smoothed switches."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A smoothed extremal at many times."""
+    """Values of a smoothed extremal at many times."""
 
     times: Array
     z: Array
     u: Array
-    """Shapes (N,), (2n, N), (m, N), in the model's units."""
+    """Times, states above costates, and controls, shapes (N,), (2n, N), (m, N), in the model's units."""
     sigma: Array
     weight: Array
-    """Switching functions and weights of |u|, shapes (m, N)."""
+    """Switching functions, and weights of |u|, shapes (m, N)."""
 
 
 def sample(problem: TwoPoint, path: Path) -> Sample:
-    """A smoothed extremal as it is."""
+    """Return the values of a smoothed extremal at many times."""
     fractions = np.linspace(0.0, 1.0, SAMPLES, endpoint=False)
     tau = np.append((path.mesh[:-1, None] + np.diff(path.mesh)[:, None] * fractions).ravel(), 1.0)
     scaled = path(tau)
@@ -50,12 +50,12 @@ def sample(problem: TwoPoint, path: Path) -> Sample:
 
 
 def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None = None) -> Guess:
-    """The structure of a sample.
+    """Return the structure of a sample as a guess of exact arcs.
 
     Parameters
     ----------
     singular
-        Where controls are taken for singular, shape (m, N); by default nowhere.
+        Where controls are assumed to be singular, shape (m, N); by default nowhere.
     """
     rows: list[tuple[int, ...]] = []
     times: list[float] = []
@@ -72,7 +72,7 @@ def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None =
 
 
 def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDArray[np.int64]:
-    """The level that minimises H for values of a switching function."""
+    """Return the levels that minimise H for given values of a switching function."""
     low, high = (bounds[control] for bounds in instance.control_set.switching)
     if low == high:
         return np.full(len(sigma), LOWER)
@@ -88,7 +88,7 @@ def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDA
 def _passages(
     times: Array, here: NDArray[np.int64], sigma: Array, weight: Array
 ) -> tuple[tuple[int, ...], list[float]]:
-    """Levels one after the other, and the times between them; from bound to bound by way of rest if |u| costs."""
+    """Return successive levels, and the times between them; between the bounds there is a rest if |u| has a cost."""
     row, switches = [int(here[0])], []
     for k in np.flatnonzero(np.diff(here)):
         before, after = int(here[k]), int(here[k + 1])

@@ -1,1 +1,1 @@
-"""Linear motions with bounded controls: the convex set of ends that are reached, and what follows from it."""
+"""Linear motions with bounded controls: the convex reachable set, and the global results that follow from it."""

@@ -1,4 +1,4 @@
-"""Linear motions: the optimum of all, from the convex set of ends that are reached, or why there is none."""
+"""Linear motions: the global optimum from the convex reachable set, or the reason why the end cannot be reached."""
 
 from __future__ import annotations
 
@@ -19,45 +19,49 @@ from satsym.solvers.switching.linear.separation import Plane, plane, separates
 from satsym.solvers.switching.structure import Guess
 
 LATER = 1e-2
-"""Share of a bound from below by which an exact arrival may be later and still be the first."""
+"""Relative delay of an exact arrival after the lower bound up to which it counts as the first."""
 
 STEP, MOST_DURATIONS = 1.1, 120
-"""Ratio of durations of which one is chosen, and how many are looked at."""
+"""Ratio of successive durations that are compared, and maximum number of them."""
 
 TRIED = 4
-"""Local minima of the cost over the duration that are tried, the cheapest first."""
+"""Maximum number of local minima of the cost over the duration that are tried, the cheapest first."""
 
 HALVINGS = 12
-"""Halvings of the time between two durations, until that with the least cost is known well enough."""
+"""Number of bisections between two durations that refine the cheapest one."""
 
 FINER = (1, 5)
-"""How many times more steps than usual show a structure, one after the other."""
+"""Factors of the number of steps with which a structure is looked for, one after the other."""
 
 PLANES = 200
-"""Planes that are looked for until an arrival is found."""
+"""Maximum number of separating planes until an arrival is found."""
 
 HORIZON = 2**17
-"""Steps after which a plane that still tells them apart does so for ever, as far as anyone will wait."""
+"""Maximum number of steps for which a plane is followed. If it still separates the end from the reachable set, it is
+assumed to do so for ever."""
 
 BEFORE = (3e-3, 3e-4, 3e-2)
-"""Shares of the least time before it at which its costate is looked for: at it there is hardly any distance left."""
+"""Fractions of the minimum time before it at which its costates are looked for, since at the minimum time itself the
+distance from the reachable set vanishes."""
 
 PRECISE = 1e-8
-"""Share of its distance by which that hyperplane may be nearer than the set; its direction is as good as the root."""
+"""Relative error of the distance of this hyperplane from the reachable set; the relative error of its direction is the
+square root of it."""
 
 BEYOND_ARRIVAL, FARTHER, TIRED = 1e-3, 1.5, 16
-"""Share of an arrival's time by which the search goes on beyond it where nothing exact came of it; the factor by which
-it goes farther each time after; and how often it does."""
+"""First fraction of an arrival time by which the search goes beyond it if no exact arcs are found; factor by which this
+fraction grows each time; maximum number of times."""
 
 UNDECIDED = 2e-3
-"""Share of its size by which a switching function that decides on nothing is off its value."""
+"""Deviation of a switching function from its switching value, relative to its magnitude, below which the control counts
+as undetermined along the whole motion."""
 
 RANK = 1e-7
-"""Relative size of what undecided controls move at all."""
+"""Relative singular value below which undetermined controls count as having no effect."""
 
 
 def optimum(instance: Instance, limits: Limits) -> Exact | None:
-    """Exact arcs of least cost; ``None`` where the motion is not linear, or its cost no sum of time and effort."""
+    """Return exact arcs of minimum cost; ``None`` if the motion is not linear or its cost not time plus effort."""
     motion = linear_motion(instance)
     if motion is None or not motion.priced or not len(given_rows(instance)):
         return None
@@ -71,9 +75,9 @@ def optimum(instance: Instance, limits: Limits) -> Exact | None:
 
 
 def unreachable(instance: Instance, limits: Limits) -> str | None:
-    """Why no control brings a linear motion to its end in the given time; ``None`` where one may.
+    """Return why no control brings a linear motion to its end in the given time; ``None`` if one may exist.
 
-    Evidence is a plane with the end on one side and everything that is reached on the other.
+    The evidence is a plane that separates the end from the reachable set.
     """
     motion, rows = linear_motion(instance), given_rows(instance)
     if motion is None or instance.tf is None or not len(rows):
@@ -93,14 +97,14 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
 
 
 def separated_by(instance: Instance, costate: Array) -> str:
-    """What separates an end, in words."""
+    """Return a text on the costates that separate an end from the reachable set."""
     names, largest = instance.model.spec.state_names, np.abs(costate).max()
     each = ", ".join(f"{names[i]}: {costate[i] / largest:.3g}" for i in given_rows(instance))
     return f"the final costates ({each}) separate this final state from the reachable set"
 
 
 def separating(instance: Instance) -> Plane | None:
-    """A plane with the end of a linear motion on one side and everything that is reached on the other, if any."""
+    """Return a plane that separates the end of a linear motion from its reachable set, or ``None``."""
     motion = linear_motion(instance)
     if motion is None or instance.tf is None:
         return None
@@ -109,7 +113,7 @@ def separating(instance: Instance) -> Plane | None:
 
 
 def _soonest(instance: Instance, motion: LinearMotion, limits: Limits) -> Exact | None:
-    """The first arrival; a later one where nothing exact comes of that."""
+    """Return exact arcs of the first arrival, or of a later one if the first does not lead to exact arcs."""
     best: Exact | None = None
     for arrival in _arrivals(instance, motion, limits):
         if best is not None and arrival.duration >= _duration(instance, best):
@@ -132,13 +136,13 @@ def _duration(instance: Instance, exact: Exact) -> float:
 
 
 def _factor(motion: LinearMotion, reach: Reach, costate: Array) -> float:
-    """What makes costates those for which H vanishes at the end."""
+    """Return the factor that scales costates such that H vanishes at the final time."""
     falling = motion.rate - reach.rate(costate)
     return motion.rate / abs(falling) if falling else 1.0
 
 
 def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list[tuple[Reach, Priced | None]]:
-    """Durations of about the least cost, the cheapest first: local minima of what ends in them cost at least."""
+    """Return durations of about minimum cost, the cheapest first: local minima of the cost over the duration."""
     first = next(_arrivals(instance, motion, limits), None)
     if first is None:
         return []
@@ -162,10 +166,10 @@ def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list
 def _between(
     instance: Instance, motion: LinearMotion, shorter: float, reach: Reach, priced: Priced | None
 ) -> tuple[Reach, Priced | None]:
-    """The duration about one at which H vanishes at the end, and the costates there.
+    """Return the duration near a given one for which H vanishes at the final time, and its costates.
 
-    Where costates jump between two durations, as they do where a control comes to decide on nothing, those between
-    for which H vanishes are the extremal's.
+    If costates jump between two durations, as they do where a control becomes undetermined, the interpolated costates
+    for which H vanishes are those of the extremal.
     """
     assert priced is not None
     known = [(reach, priced, reach.rate(priced.costate))]
@@ -186,7 +190,7 @@ def _between(
 
 
 def _given(instance: Instance, motion: LinearMotion, duration: float, limits: Limits) -> Exact | None:
-    """The least cost in a given time, with more steps where exact arcs do not come of fewer."""
+    """Return exact arcs of minimum cost in a given time, found with more steps if necessary; otherwise ``None``."""
     for finer in FINER:
         exact = _cheapest(instance, limits, [(Reach(instance, motion, duration, finer), None)])
         if exact is not None or limits.expired:
@@ -195,7 +199,7 @@ def _given(instance: Instance, motion: LinearMotion, duration: float, limits: Li
 
 
 def _cheapest(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced | None]]) -> Exact | None:
-    """The cheapest of the exact arcs that these lead to."""
+    """Return the cheapest of the exact arcs to which several durations lead, or ``None``."""
     found = [exact for first in _guesses(instance, limits, tried) if (exact := attempt(instance, first, limits))]
     return min(found, key=lambda exact: exact.trajectory.cost(instance), default=None)
 
@@ -210,22 +214,23 @@ def _guesses(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced
 
 @dataclass(frozen=True)
 class Arrival:
-    """A time in which the end may be reached first, and costates there that say how."""
+    """A time in which the end may first be reached, and its final costates."""
 
     duration: float
-    """From the start; nothing arrives in less than the first of them."""
+    """Duration from the start; nothing arrives in less than the first such duration."""
     costates: tuple[Array, ...]
-    """Costates of all states at the end, shape (n,), without a scale, one for each way to look for them."""
+    """Final costates of all states, shape (n,), up to a factor, one for each time before the arrival at which they were
+    computed."""
 
 
 def _arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
-    """Times in which a linear motion may reach its end first, the shortest first: no shorter one is left out.
+    """Yield durations in which a linear motion may first reach its end, the shortest first, none of them omitted.
 
-    A costate at the end is a hyperplane; as long as the set of ends that are reached lies on one side of it and the
-    given end on the other, the time is too short. From one such time to the first at which the plane no longer tells
-    them apart nothing can arrive; there another plane is looked for (Neustadt, Synthesizing time optimal control
-    systems, Journal of Mathematical Analysis and Applications 1, 1960; Eaton, An iterative solution to time-optimal
-    control, ibid. 5, 1962). Nothing is given where no time is found.
+    A final costate defines a hyperplane. As long as the reachable set lies on one side of it and the given end on the
+    other, the duration is too short. From such a duration to the first one at which the plane no longer separates them,
+    the end cannot be reached; there another plane is determined (Neustadt, Synthesizing time optimal control systems,
+    Journal of Mathematical Analysis and Applications 1, 1960; Eaton, An iterative solution to time-optimal control,
+    ibid. 5, 1962). Nothing is yielded if no duration is found.
     """
     rows, n = given_rows(instance), len(instance.initial)
     apart = np.array(instance.initial)[rows] - goal(instance, rows, instance.t0)
@@ -249,7 +254,7 @@ def _arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Itera
 
 
 def _scale(instance: Instance, motion: LinearMotion) -> float:
-    """A duration to begin with: that in which full controls change the state as much as it is to be changed."""
+    """Return an initial duration, in which full controls change the state by as much as required."""
     rates = motion.states @ np.array(instance.initial) + motion.drift
     rates = np.abs(rates) + np.abs(motion.controls) @ np.maximum(np.abs(instance.lower), np.abs(instance.upper))
     rows = given_rows(instance)
@@ -260,7 +265,7 @@ def _scale(instance: Instance, motion: LinearMotion) -> float:
 
 
 def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
-    """The first duration after one at which a plane no longer tells the end from what is reached."""
+    """Return the first duration after a given one at which a plane no longer separates the end, or ``None``."""
     length = scale / steps(motion, scale)
     rows = given_rows(instance)
     low, high = np.array(instance.lower), np.array(instance.upper)
@@ -294,10 +299,10 @@ def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: flo
 
 
 def _guessed(instance: Instance, reach: Reach, costate: Array) -> Guess:
-    """The structure that minimises H with costates at the end, shape (n,).
+    """Return the structure that minimises H for given final costates, shape (n,).
 
-    A control whose switching function never leaves the value at which it switches is undecided: others do as well. It
-    is given the arcs that bring the motion to its end with the least effort, weighed so that few do.
+    A control whose switching function stays at its switching value along the whole motion is undetermined. It is given
+    arcs that bring the motion to its end with minimum effort, weighted such that few arcs suffice.
     """
     open_ = undecided(reach, costate)
     if open_.any():
@@ -311,7 +316,7 @@ def _guessed(instance: Instance, reach: Reach, costate: Array) -> Guess:
 
 
 def undecided(reach: Reach, costate: Array) -> NDArray[np.bool_]:
-    """Controls whose switching functions are all along where they switch, shape (m,)."""
+    """Return the controls whose switching functions stay at their switching values, shape (m,)."""
     sigma, weight = reach.switching(costate)
     room = np.array(reach.instance.upper) - np.array(reach.instance.lower)
     acting = (np.abs(sigma) + weight).max(axis=1) * room
@@ -321,7 +326,7 @@ def undecided(reach: Reach, costate: Array) -> NDArray[np.bool_]:
 
 
 def _exactly(reach: Reach, costate: Array, open_: NDArray[np.bool_]) -> Array:
-    """Costates next to those given with which undecided controls are so exactly."""
+    """Return costates near the given ones for which undetermined controls are exactly undetermined."""
     sigma, weight = reach.switching(costate)
     by_costate = (reach.powers[::-1] @ reach.motion.controls)[:, reach.rows][:, :, open_].transpose(2, 0, 1)
     missing = (np.sign(sigma) * weight - sigma)[open_].ravel()
@@ -331,7 +336,7 @@ def _exactly(reach: Reach, costate: Array, open_: NDArray[np.bool_]) -> Array:
 
 
 def _with_least_effort(reach: Reach, sigma: Array, weight: Array, open_: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Switching functions and weights of |u|, so changed that undecided controls take the values of least effort."""
+    """Return switching functions and weights of |u| changed such that undetermined controls have minimum effort."""
     m, count = len(sigma), reach.count
     levels = reach.levels.reshape(3, m, count)
     middle = (sigma[:, 1:] + sigma[:, :-1]) / 2.0

@@ -1,6 +1,6 @@
-"""Motions x' = A x + B u + c with constant coefficients: what controls do until a given end, in steps of equal length.
+"""Linear motions x' = A x + B u + c with constant coefficients, integrated in steps of equal length.
 
-The states that such controls within a box can reach form a convex set; whatever is said about its points is global.
+The states that controls in a box can reach form a convex set, so that results about its points are global.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 DRAWN = 24
-"""Points at which coefficients are compared."""
+"""Number of random points at which coefficients are compared."""
 
 EQUAL_COEFFICIENTS = 1e-12
-"""Relative difference of coefficients that is rounding."""
+"""Relative difference of coefficients that counts as rounding."""
 
 TERMS = 18
-"""Terms of the exponential series, once its argument is below one half."""
+"""Number of terms of the exponential series for arguments below one half."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,20 +29,20 @@ class LinearMotion:
     states: Array
     controls: Array
     drift: Array
-    """A, B and c: shapes (n, n), (n, m) and (n,)."""
+    """A, B and c, shapes (n, n), (n, m) and (n,)."""
     rate: float
-    """Rate of the cost with time; NaN where the cost is of another form."""
+    """Cost per unit of time; NaN if the cost has another form."""
     slope: Array
     weight: Array
-    """Weights of controls and of their magnitudes in the cost, shape (m,)."""
+    """Weights of the controls and of their magnitudes in the cost, shape (m,)."""
 
     @property
     def priced(self) -> bool:
-        """Whether the cost has the form that is looked for."""
+        """Return whether the cost has this form."""
         return bool(np.isfinite(self.rate))
 
     def step(self, length: float) -> tuple[Array, Array, Array]:
-        """What one step of that length does: to states, by controls, and by the drift."""
+        """Return the effect of one step of given length: of the states, of the controls, and of the drift."""
         n, m = self.controls.shape
         table = np.zeros((n + m + 1, n + m + 1))
         table[:n] = np.concatenate([self.states, self.controls, self.drift[:, None]], axis=1)
@@ -50,7 +50,7 @@ class LinearMotion:
         return found[:, :n], found[:, n:-1], found[:, -1]
 
     def powers(self, length: float, count: int) -> Array:
-        """What 0, 1, ... count steps do to states, shape (count + 1, n, n)."""
+        """Return the state transition matrices of 0, 1, ... count steps, shape (count + 1, n, n)."""
         one = self.step(length)[0]
         found = np.eye(len(one))[None]
         leap = one
@@ -61,7 +61,7 @@ class LinearMotion:
 
 
 def exponential(matrix: Array) -> Array:
-    """The exponential of a matrix, or of each of several: its series for a small part of it, squared."""
+    """Return the exponential of one or several matrices, by scaling, a series, and squaring."""
     size = float(np.abs(matrix).sum(axis=-2).max(initial=0.0))
     if not np.isfinite(size):
         raise ArithmeticError("coefficients are not finite")
@@ -77,7 +77,7 @@ def exponential(matrix: Array) -> Array:
 
 
 def linear_motion(instance: Instance) -> LinearMotion | None:
-    """The coefficients of an instance's motion; ``None`` where they vary, or controls have no box around them."""
+    """Return the coefficients of an instance's motion; ``None`` if they vary or a control is not in a box."""
     model, p, n, m = instance.model, instance.parameters, len(instance.initial), len(instance.lower)
     bounded = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
     spec = model.spec
@@ -100,7 +100,7 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
 
 
 def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Array, Array]:
-    """Coefficients of the running cost; NaN for the first where there are others, or a terminal cost."""
+    """Return the coefficients of the running cost; the first is NaN for other costs or a terminal cost."""
     model, p = instance.model, instance.parameters
     if not model.spec.switching:
         return float("nan"), np.zeros(len(u)), np.zeros(len(u))
@@ -113,6 +113,6 @@ def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Arra
 
 
 def _constant(values: Array) -> bool:
-    """Whether values do not vary along the last axis."""
+    """Return whether values are constant along the last axis, up to rounding."""
     spread = np.abs(values - values[..., :1]).max(initial=0.0)
     return bool(np.isfinite(values).all() and spread <= EQUAL_COEFFICIENTS * np.abs(values).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""The ends that controls within a box reach in a given time, and at what cost, where the motion is linear."""
+"""The reachable set of a linear motion with controls in a box in a given time, and the cost of its points."""
 
 from __future__ import annotations
 
@@ -15,78 +15,79 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.linear.linear_motion import LinearMotion
 
 FEWEST, MOST_STEPS, PER_RADIAN = 160, 1600, 16.0
-"""Steps of a duration, and how many for each unit of the motion's quickest rate times the duration."""
+"""Minimum and maximum number of steps of a duration, and number of steps for each unit of the fastest rate times the
+duration."""
 
 FLAT = 1e-9
-"""Width of the set of ends, relative to its size, in a direction in which no control acts."""
+"""Width of the reachable set, relative to its size, in a direction in which no control acts."""
 
 THERE = 1e-6
-"""Distance of an end from the set, relative to the size of the set, that is none."""
+"""Distance of an end from the reachable set, relative to the size of the set, that counts as zero."""
 
 CHEAPER = 1e-7
-"""Relative gap between a cost and its bound from below at which the least one is found."""
+"""Relative gap between a cost and its lower bound at which the minimum cost is found."""
 
 TIGHT = 0.1
-"""Share of its distance by which a hyperplane may be nearer than the set."""
+"""Relative amount by which a separating hyperplane may be closer to the end than the reachable set."""
 
 SEARCHES = 60
-"""Searches for hyperplanes, one after the other, until the cost is found."""
+"""Maximum number of hyperplanes that are determined for a cost."""
 
 MOST_SUPPORTS = 400
-"""Support points that are asked for at most, until a nearest point is found."""
+"""Maximum number of support points for a nearest point."""
 
 NO_GAIN = 1e-13
-"""Relative gain of a support point below which rounding has the last word."""
+"""Relative gain of a support point below which it counts as rounding."""
 
 
 @dataclass(frozen=True)
 class Priced:
-    """The least cost of an end, as far as steps of equal length tell."""
+    """The minimum cost of an end, up to the discretisation by steps of equal length."""
 
     cost: float
-    """A bound from below that is met up to the accuracy of the search."""
+    """Lower bound of the cost, equal to it up to the accuracy of the search."""
     costate: Array
-    """Costates of all states at the end, shape (n,); the optimum minimises H with them."""
+    """Final costates of all states, shape (n,), for which the optimum minimises H."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """All ends that are reached in a given time."""
+    """The reachable set of a linear motion in a given time."""
 
     instance: Instance
     motion: LinearMotion
-    """Whose."""
+    """Instance and its motion."""
     duration: float
-    """From the start."""
+    """Duration from the start."""
     finer: int = 1
-    """So many times more steps are taken than usual: short arcs do not show in fewer."""
+    """Factor of the number of steps; short arcs only show with more steps."""
 
     @cached_property
     def rows(self) -> NDArray[np.intp]:
-        """States that are given at the end."""
+        """Indices of the states that are given at the end."""
         return given_rows(self.instance)
 
     @cached_property
     def count(self) -> int:
-        """Steps."""
+        """Number of steps."""
         return self.finer * steps(self.motion, self.duration)
 
     @cached_property
     def powers(self) -> Array:
-        """What 0, 1, ... steps do to states, shape (N + 1, n, n)."""
+        """State transition matrices of 0, 1, ... steps, shape (N + 1, n, n)."""
         return self.motion.powers(self.duration / self.count, self.count)
 
     def pushing(self, costate: Array) -> Array:
-        """Costates at the end, shape (n,), times what controls do to it from each of the nodes, shape (m, N + 1)."""
+        """Return the effect of controls at each node on the end, weighted by final costates (n,), shape (m, N + 1)."""
         return np.asarray((costate @ self.powers[::-1] @ self.motion.controls).T)
 
     def switching(self, costate: Array) -> tuple[Array, Array]:
-        """Switching functions and weights of |u| at the nodes, for costates at the end; shapes (m, N + 1)."""
+        """Return switching functions and weights of |u| at the nodes for final costates, shapes (m, N + 1)."""
         sigma = self.pushing(costate) + self.motion.slope[:, None]
         return sigma, np.broadcast_to(self.motion.weight[:, None], sigma.shape)
 
     def rate(self, costate: Array) -> float:
-        """H at the end for costates there, in which the end moves as it is given."""
+        """Return H at the final time for given final costates, with the motion of the given end included."""
         motion, length, t = self.motion, self.duration / self.count, self.instance.t0 + self.duration
         sigma, weight = self.switching(costate)
         low, rest, high = (row[:, None] for row in self.levels.reshape(3, len(sigma), -1)[:, :, 0])
@@ -102,7 +103,7 @@ class Reach:
 
     @cached_property
     def steps(self) -> tuple[Array, Array]:
-        """What the controls of each step do to the given states, shape (F, m, N), and where these end without any."""
+        """Effects of each step's controls on the given states, shape (F, m, N), and their values without control."""
         motion, count, powers = self.motion, self.count, self.powers[:, self.rows]
         _, acting, drift = motion.step(self.duration / count)
         effects = (powers[count - 1 :: -1] @ acting).transpose(1, 2, 0)
@@ -111,9 +112,10 @@ class Reach:
 
     @cached_property
     def round(self) -> tuple[Array, Array, Array]:
-        """Coordinates in which the set is about as long as it is wide, and the end is the origin.
+        """Coordinates in which the reachable set is about as long as wide, and the given end is the origin.
 
-        From given states to these, (F, F); the effects there, (F, m N), and where the motion ends for controls zero.
+        The matrix from given states to these coordinates, (F, F); the effects of controls in them, (F, m N); and the
+        uncontrolled end in them.
         """
         effects, base = self.steps
         flat = effects.reshape(len(self.rows), -1) * (self.levels[2] - self.levels[0]) / 2.0
@@ -131,9 +133,9 @@ class Reach:
         return goal(self.instance, self.rows, self.instance.t0 + self.duration)
 
     def separation(self, tight: float = TIGHT) -> tuple[float, Array]:
-        """How far the end is from the set, at least, and the costate of all states that shows it.
+        """Return a lower bound of the distance of the end from the reachable set, and the costate that proves it.
 
-        Not positive where the end is in the set; relative to the size of the set.
+        The bound is relative to the size of the set, and not positive if the end is in the set.
         """
         towards, effects, base = self.round
         low, high = self.levels[0], self.levels[2]
@@ -151,7 +153,7 @@ class Reach:
         return np.repeat([low, np.clip(0.0, low, high), high], self.count, axis=1)
 
     def minimum_cost(self) -> Priced | None:
-        """The least cost of the end, which must be in the set; ``None`` where no costate shows it."""
+        """Return the minimum cost of the end, which must be in the set; ``None`` if no costate proves it."""
         towards, effects, base = self.round
         length = self.duration / self.count
         slope, weight = (np.repeat(row, self.count) * length for row in (self.motion.slope, self.motion.weight))
@@ -159,9 +161,9 @@ class Reach:
         return None if found is None else Priced(found[0], self.in_full(towards.T @ found[1]))
 
     def nearest_miss(self) -> Array:
-        """By how much the nearest of the ends misses the given one, each state in units of what controls move it by.
+        """Return by how much the nearest reachable end misses the given one, shape (F,), in the model's units.
 
-        Shape (F,), in the model's units.
+        The distance is measured in units of the effect of the controls on each state.
         """
         effects, base = self.steps
         low, high = self.levels[0], self.levels[2]
@@ -177,29 +179,30 @@ class Reach:
         return np.asarray(near.fractions @ near.corners * sizes)
 
     def in_full(self, costate: Array) -> Array:
-        """Costates of all states from those of given ones."""
+        """Return costates of all states from those of the given states, with zeros for the others."""
         found = np.zeros(len(self.instance.initial))
         found[self.rows] = costate
         return found
 
 
 def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple[float, Array] | None:
-    """The least price of levels that lead to the origin, and the multipliers that show it.
+    """Return the minimum price of levels that lead to the origin, and the multipliers that prove it.
 
     Parameters
     ----------
     effects
-        Of a unit of each control, shape (F, K).
+        Effects of a unit of each control, shape (F, K).
     base
-        Where none lead, shape (F,).
+        The end without controls, shape (F,).
     levels, prices
-        To choose from for each control, and at what price: shapes (c, K).
+        Levels available for each control, and their prices, shapes (c, K).
 
     Returns
     -------
     tuple or None
-        A bound from below that is met up to the accuracy of the search; and multipliers, shape (F,): each control is at
-        the level of least price and multipliers times effects. ``None`` where no multipliers show anything.
+        A lower bound that is equal to the price up to the accuracy of the search; and multipliers, shape (F,), for
+        which each control is at the level that minimises price plus multipliers times effects. ``None`` if no
+        multipliers prove a bound.
     """
     lowest, highest = (float(f(prices, axis=0).sum()) for f in (np.min, np.max))
     unit = max(highest - lowest, 1e-300)
@@ -227,18 +230,18 @@ def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple
 
 
 def steps(motion: LinearMotion, duration: float) -> int:
-    """How many steps show a duration well."""
+    """Return the number of steps that resolves a duration."""
     quickest = float(np.abs(np.linalg.eigvals(motion.states)).max(initial=0.0))
     return int(min(max(FEWEST, np.ceil(PER_RADIAN * quickest * duration)), MOST_STEPS))
 
 
 def given_rows(instance: Instance) -> NDArray[np.intp]:
-    """States that are given at the end."""
+    """Return the indices of the states that are given at the end."""
     return np.flatnonzero(np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0))
 
 
 def goal(instance: Instance, rows: NDArray[np.intp], t: float) -> Array:
-    """What is given of them, shape (F,)."""
+    """Return the given end values of some states, shape (F,)."""
     given, on_reference, target = np.array(final_argument(instance)).reshape(3, -1)
     wanted = given * target
     if on_reference.any():
@@ -248,33 +251,35 @@ def goal(instance: Instance, rows: NDArray[np.intp], t: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """A point of a convex set that is nearly the nearest one to the origin."""
+    """A point of a convex set that is approximately nearest to the origin."""
 
     point: Array
-    """Point of the set, shape (d,): also the direction of a hyperplane that separates it from the origin, if any."""
+    """Point of the set, shape (d,), which also is the direction of a hyperplane that separates the set from the
+    origin."""
     distance: float
-    """Distance of the hyperplane from the origin, a lower bound of the set's; not positive where there is none."""
+    """Distance of this hyperplane from the origin, a lower bound of the set's distance; not positive if none
+    separates."""
     corners: Array
     fractions: Array
-    """Support points, shape (k, d), whose mean with these weights the point is."""
+    """Support points, shape (k, d), and weights with which the point is their mean."""
 
 
 def nearest_point(support: Callable[[Array], Array], first: Array, close: float, tight: float) -> Near:
-    """Look for the point of a convex set that is nearest to the origin, the set being known by its support points.
+    """Return approximately the point of a convex set that is nearest to the origin, from support points of the set.
 
-    Wolfe's algorithm: the nearest point of the hull of few support points, one more at a time (Wolfe, Finding the
-    nearest point in a polytope, Mathematical Programming 11, 1976).
+    Wolfe's algorithm determines the nearest point of the hull of few support points, which are added one at a time
+    (Wolfe, Finding the nearest point in a polytope, Mathematical Programming 11, 1976).
 
     Parameters
     ----------
     support
-        From a direction to a point of the set that is farthest against it: the least product with it.
+        Function from a direction to the point of the set with the smallest scalar product with this direction.
     first
         A point of the set.
     close
-        Distance that counts as none.
+        Distance that counts as zero.
     tight
-        Share of its distance by which a hyperplane may be nearer to the origin than the point.
+        Relative amount by which the hyperplane may be closer to the origin than the point.
     """
     corners: Array = first[None]
     fractions: Array = np.ones(1)
@@ -295,7 +300,7 @@ def nearest_point(support: Callable[[Array], Array], first: Array, close: float,
 
 
 def _with(corners: Array, fractions: Array, new: Array) -> tuple[Array, Array]:
-    """The nearest point of the hull with one corner more, and without those that it does not need."""
+    """Return the nearest point of the hull with one more corner, as corners and weights, without unneeded corners."""
     corners, fractions = np.concatenate([corners, new[None]]), np.append(fractions, 0.0)
     for _ in range(2 * len(corners)):
         wanted = _affine(corners)
@@ -313,7 +318,7 @@ def _with(corners: Array, fractions: Array, new: Array) -> tuple[Array, Array]:
 
 
 def _affine(corners: Array) -> Array:
-    """Weights, of sum one, of the point of least norm on the plane through all corners."""
+    """Return weights, with sum 1, of the point of smallest norm on the plane through all corners."""
     if len(corners) == 1:
         return np.ones(1)
     sides = corners[1:] - corners[0]

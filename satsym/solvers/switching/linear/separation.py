@@ -1,4 +1,4 @@
-"""Whether costates separate given ends from all that is reached, by an integration of its own (SciPy's DOP853)."""
+"""Independent check, by SciPy's DOP853, whether costates separate given ends from the reachable set."""
 
 from __future__ import annotations
 
@@ -14,36 +14,36 @@ from satsym.solvers.switching.linear.reach import given_rows, goal
 TOLERANCE = 1e-11
 
 CLEAR_DISTANCE = 1e-8
-"""Distance from the plane, relative to the terms that it is the sum of, that no error of integration explains."""
+"""Minimum distance from the plane, relative to its terms, that integration errors cannot explain."""
 
 LONGEST_STEP = 1.0 / 64.0
-"""Share of the duration that a step may be: a control could switch unseen in a longer one."""
+"""Maximum step, as a fraction of the duration, so that no switch of a control is missed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """What motions of one system can do along costates, in a given time, whatever they start from and their bounds."""
+    """Largest motion of a linear system along costates in a given time, for any initial state and any bounds."""
 
     costate: Array
-    """At the end, the largest being 1, shape (n,)."""
+    """Final costates, scaled to a largest magnitude of 1, shape (n,)."""
     first: Array
-    """At the start."""
+    """Initial costates, shape (n,)."""
     up: Array
     down: Array
-    """The effects of controls along it, integrated where they are positive, and where they are negative, shape (m,)."""
+    """Integrals of the positive and of the negative effects of controls along the costates, shape (m,)."""
     drift: float
     moved: float
-    """The effect of what moves without control, integrated, and its magnitude."""
+    """Integral of the effect of the uncontrolled motion along the costates, and of its magnitude."""
 
     def beyond(self, initial: Array, wanted: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
-        """Starts, shape (n, M), from which no control within bounds, (m, M), leads to the end, or past it, shape (M,).
+        """Return for which starts, (n, M), no control within bounds, (m, M), reaches the end or beyond, shape (M,).
 
-        So much less than the end asks for is a proof, as far as the integration is right.
+        This proves that the end cannot be reached, as far as the integration is accurate.
 
         Parameters
         ----------
         wanted
-            What ends ask for along the costates: the terms of each, shape (F, M).
+            Required values along the costates, as the terms of each, shape (F, M).
         """
         with np.errstate(invalid="ignore"):
             least = self.drift + self.up @ lower + self.down @ upper
@@ -56,9 +56,9 @@ class Plane:
 
 
 def plane(instance: Instance, costate: Array) -> Plane | None:
-    """The plane of costates at the given final time, shape (n,); ``None`` where it cannot be integrated.
+    """Return the plane of costates at the given final time, shape (n,); ``None`` if the integration fails.
 
-    The motion must be linear. The adjoint equation is integrated backwards, and with it what controls do along it.
+    The motion must be linear. The adjoint equation is integrated backwards, together with the effect of the controls.
     """
     from scipy.integrate import solve_ivp
 
@@ -86,12 +86,12 @@ def plane(instance: Instance, costate: Array) -> Plane | None:
 
 
 def separates(instance: Instance, costate: Array) -> bool:
-    """Whether no control within its bounds brings the motion to its end, or beyond, along the costates at the end.
+    """Return whether no control within its bounds brings the motion to its end, or beyond, along given final costates.
 
     Parameters
     ----------
     costate
-        At the given final time, shape (n,); zero where the final state is free.
+        Costates at the given final time, shape (n,); zero where the final state is free.
     """
     assert instance.tf is not None
     one, rows = plane(instance, costate), given_rows(instance)
