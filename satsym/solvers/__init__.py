@@ -1,4 +1,4 @@
-"""Solvers. They see kernels only: functions of numbers, whatever model these came from."""
+"""Solvers, which know a model by its kernels only: functions of numbers, whatever model these were generated from."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["simulate", "solve"]
 
 QUICK = 150_000
-"""Columns that may be linearised before a direct search is asked."""
+"""Maximum number of columns that may be linearised before a direct search is tried."""
 
 Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 
@@ -32,10 +32,10 @@ Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 def solve(instance: Instance, progress: Progress | None = None, *, examined: bool = True) -> Solution:
     """Solve an instance by the method it names and certify the answer.
 
-    By default that is collocation, or exact arcs where controls switch between their bounds; collocation again where
-    vectors might do so that have their full norms all the time. Where collocation finds an extremal but not accurately,
-    multiple shooting is tried. Where it finds nothing and no final state is given, the sweep is tried as well. The
-    sweep is as accurate as its steps allow; a certificate asks for more, so its answers have none.
+    By default the method is collocation, or exact arcs if controls switch between their bounds; collocation again if
+    vectors might switch but have their full norms all the time. If collocation finds an extremal that is not accurate
+    enough, multiple shooting is tried. If it finds nothing and no final state is given, the forward-backward sweep is
+    tried. The sweep is only as accurate as its steps; a certificate requires more, so its answers have none.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
     progress
         Called after each iteration.
     examined
-        Whether the answer is certified, and another taken that the certificate finds to be cheaper.
+        Whether the answer is certified, and replaced by a cheaper one if the certificate finds one.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def _solved_in_steps(instance: Instance, progress: Progress | None, last: Solver
 
 
 def _with_free(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
-    """Solve an instance, and for what it leaves free besides its end, if it does."""
+    """Solve an instance and, if other quantities than its end are free, minimise the cost over these."""
     found = partial(_found, examined=examined)
     if instance.end_limits:
         from satsym.solvers import end_limits
@@ -98,7 +98,7 @@ def _with_free(instance: Instance, progress: Progress | None, examined: bool = T
 
 
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None, examined: bool) -> Solution:
-    """What a solver finds with values given for what is free, and little work; else what a direct search finds."""
+    """Return the solution of a solver with limited work for free quantities, otherwise that of a direct search."""
     from satsym.solvers import by_search
 
     deadline = deadline_of(instance)
@@ -120,7 +120,7 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None, 
 
 
 def _resolved(found: Solution, solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
-    """The extremal of a search as a solver finds it that varies what is free, if its certificate can say more then."""
+    """Return the extremal of a search, solved again for free quantities if that certifies it, else unchanged."""
     from satsym.solvers.improving import starting_from
 
     if found.certificate is None or found.certificate.verdict is Verdict.CERTIFIED:
@@ -133,7 +133,7 @@ def _resolved(found: Solution, solver: Solver, instance: Instance, progress: Pro
 
 
 def _in_full(found: Solution, instance: Instance) -> Solution:
-    """A solution whose instance has the options of what was asked, not those that were left of its time."""
+    """Return a solution whose instance has the options of the original problem, not the remaining time limit."""
     return replace(found, instance=replace(found.instance, solver=instance.solver))
 
 
@@ -143,13 +143,13 @@ def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
 
 
 def _named(instance: Instance) -> Method:
-    """The method that an instance names, or the one that is made for its model."""
+    """Return the method that an instance names, or the automatic one for its model."""
     name = instance.solver.method
     return methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
 
 
 def _found(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
-    """What is found, without a final state that follows from the others."""
+    """Solve an instance, leaving out a final state that follows from the others by a conserved quantity."""
     from satsym.solvers import iteration
     from satsym.solvers.conserved import contradiction
     from satsym.solvers.redundant_ends import redundant
@@ -174,7 +174,7 @@ def _found(instance: Instance, progress: Progress | None, examined: bool = True)
 
 
 def _beside(less: Redundant, found: Solution, progress: Progress | None, examined: bool) -> tuple[Redundant, Solution]:
-    """Another final state left out, and the answer that ends as is asked; what was found where there is none."""
+    """Return the solution with another final state left out that ends as required; otherwise the given solution."""
     for other in less.others:
         solution = _by_method(other.instance, progress, examined)
         if other.met(solution):
@@ -183,7 +183,7 @@ def _beside(less: Redundant, found: Solution, progress: Progress | None, examine
 
 
 def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
-    """What the method finds, or the sweep in its place, in the time that is left."""
+    """Solve an instance by its method or, if that fails, by multiple shooting or the sweep in the remaining time."""
     method, deadline = _named(instance), deadline_of(instance)
     automatic = instance.solver.method == methods.AUTO
     solution = _solved(method, instance, progress, examined)
@@ -201,19 +201,19 @@ def _by_method(instance: Instance, progress: Progress | None, examined: bool) ->
 
 
 def _refuted(solution: Solution) -> bool:
-    """Whether an answer has a certificate that says that it is none."""
+    """Return whether a solution has a certificate that refutes it."""
     return solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
 
 
 def _nearly(solution: Solution) -> bool:
-    """Whether there is no answer, but an extremal that is not accurate enough: of others no trajectory is kept."""
+    """Return whether a solution without an answer has an extremal that is only not accurate enough."""
     return solution.status is Status.NOT_CONVERGED and not any(
         math.isnan(value) for value in solution.x[:, -1].tolist()
     )
 
 
 def _solved(method: Method, instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
-    """Solve an instance by a method, with its certificate if it has one and is examined."""
+    """Solve an instance by a method, with a certificate if the method has one and it is required."""
     solver = _in_time(method)
     if not (method.certified and examined):
         return solver(instance, progress)
@@ -223,7 +223,7 @@ def _solved(method: Method, instance: Instance, progress: Progress | None, exami
 
 
 def _confirmed(swept: Solution, method: Method, progress: Progress | None, deadline: float) -> Solution:
-    """What a method with a certificate makes of what the sweep found; no answer where it finds none there."""
+    """Return the certified solution near a result of the sweep, or no answer if none is confirmed there."""
     from satsym.solvers.improving import starting_from
 
     if not swept.status.answered or not swept.lam.any():
@@ -240,7 +240,7 @@ def _confirmed(swept: Solution, method: Method, progress: Progress | None, deadl
 
 
 def _in_time(method: Method) -> Solver:
-    """The function of a method, which loads no other; without a trajectory where time ends while that is computed."""
+    """Return the solver of a method, loading no other method; it returns no trajectory if the time limit is reached."""
     module, _, function = method.solver.partition(":")
     solver: Solver = getattr(import_module(module), function)
 

@@ -1,6 +1,6 @@
-"""Methods that choose between ways to an extremal, by what a model is; most begin with the direct search.
+"""Methods that combine the direct search with other solvers, depending on the model.
 
-It is asked as well where another way finds nothing, and where something may be cheaper than what that finds.
+The search is also used if another solver finds nothing, and to look for cheaper solutions than that of another solver.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from satsym.status import Status, Verdict
 Solver = Callable[[Instance, Progress | None], Solution]
 
 RELAXED = 20_000
-"""Columns that may be linearised for the extremal without path constraints."""
+"""Maximum number of columns that may be linearised for the extremal without path constraints."""
 
 COMPARED = 2_000_000
-"""Unknowns times iterations that a search for a cheaper answer may take."""
+"""Maximum work of a search for a cheaper answer, in unknowns times iterations."""
 
 LITTLE = 200_000
-"""Columns that may be linearised, below which a problem with a free final time is not searched for."""
+"""Limit of columns to linearise below which a problem with a free final time is not passed to the search."""
 
 CHEAPER = 1e-6
-"""Share of its size, or of that of its terms, by which something must be cheaper to be taken."""
+"""Relative difference of costs above which a cheaper solution is taken."""
 
 
 def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -45,7 +45,7 @@ def bang_bang(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        Of a model with such controls.
+        Instance of a model with such controls.
     progress
         Called after each iteration.
     """
@@ -87,21 +87,21 @@ def shooting(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance with path constraints, or with points on the way, by extremals in arcs.
+    """Solve an instance with path constraints or waypoints by extremals in arcs.
 
-    Where the extremal without path constraints is found quickly and keeps to them, it is the answer.
+    If the extremal without path constraints is found quickly and satisfies them, it is the answer.
 
     Parameters
     ----------
     instance
-        Of a model with some of either.
+        Instance of a model with path constraints or waypoints.
     progress
         Called after each iteration.
 
     Raises
     ------
     BadInput
-        If a path constraint is violated where the motion is to start or to end.
+        If a path constraint is violated at the given initial or final state.
     """
     spec = instance.model.spec
     if spec.path_constraints:
@@ -116,11 +116,11 @@ def boundary_arcs(instance: Instance, progress: Progress | None = None) -> Solut
 
 
 def _with_search(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
-    """What a solver finds from a line or a guess; else what the search finds, unless little work is asked for.
+    """Solve an instance from a straight line or a guess, otherwise by the search, unless little work is allowed.
 
-    Where the final time is free there is no line, and the search is all there is.
+    If the final time is free there is no straight line, and only the search is left.
 
-    An extremal that is not accurate enough stays what was found where the search has no answer.
+    If the search has no answer either, an extremal that is not accurate enough is returned.
     """
     began, deadline = time.perf_counter(), deadline_of(instance)
     found = solver(instance, progress)
@@ -139,12 +139,12 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None) 
 
 
 def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
-    """The answer of a search, or a cheaper one that its certificate knows; ``None`` without one, or where that fails.
+    """Return the answer of a search, or a cheaper one from its certificate; ``None`` if none is found or it fails.
 
     Parameters
     ----------
     certified
-        Whether it is examined.
+        Whether the answer is certified.
     """
     from satsym.solvers.improving import improved
 
@@ -163,14 +163,14 @@ def instead(instance: Instance, progress: Progress | None, certified: bool) -> S
 
 
 def cheaper(stated: Instance, solution: Solution, deadline: float) -> Solution:
-    """An answer, or another one that the search finds and that costs less.
+    """Return a solution, or a cheaper one that the search finds.
 
     Parameters
     ----------
     stated
-        What was asked: the answer's own instance may lack a final state that follows from others.
+        The original problem; the solution's own instance may lack a final state that follows from others.
     deadline
-        On the clock of :func:`~satsym.solvers.iteration.computed`.
+        Deadline on the clock of :func:`~satsym.solvers.iteration.computed`.
     """
     began = time.perf_counter()
     instance = solution.instance if stated.free else stated

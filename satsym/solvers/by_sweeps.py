@@ -1,4 +1,4 @@
-"""Method "sweep". Where sweeps end without any control, that is the answer only if no control can be cheaper."""
+"""Method "sweep". A result without any control is only accepted if no control can be cheaper."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        With a given final time and a free final state.
+        Instance with a given final time and a free final state.
     progress
         Called after each sweep.
     """

@@ -1,8 +1,8 @@
-"""Polynomials of the states that the motion conserves whatever its controls do, up to the second degree.
+"""Polynomials of the states, up to the second degree, that the motion conserves for all controls.
 
-They are found in numbers: at states, times and controls that are drawn, the gradient of such a polynomial is
-perpendicular to the rates of change. Where one has another value at the end that is asked for than at the
-start, nothing arrives.
+They are found numerically: at random states, times and controls, the gradient of such a polynomial is orthogonal to the
+rates of the states. If its value at the required final state differs from the initial one, the final state cannot be
+reached.
 """
 
 from __future__ import annotations
@@ -17,34 +17,34 @@ from satsym.instance import Instance
 from satsym.status import LEAVE_FREE
 
 DRAWN = 4
-"""Times as many points are drawn as there are monomials."""
+"""Number of random points, as a multiple of the number of monomials."""
 
 SPREAD = 0.4
-"""Spread of states round the start, relative to their sizes."""
+"""Range of random states about the initial state, relative to their magnitudes."""
 
 CANCELS = 1e-11
-"""Share of the largest singular value below which rates cancel for every state and control."""
+"""Singular value, relative to the largest, below which a polynomial counts as conserved."""
 
 EQUAL_QUANTITY = 1e-6
-"""Share of its terms by which a conserved quantity may differ at the end, from numbers that were rounded."""
+"""Largest relative difference between initial and final value of a conserved quantity that rounded input may cause."""
 
 SEEN = 1e-8
-"""Coefficients below this share of the largest are rounding."""
+"""Magnitude of a coefficient, relative to the largest, below which it counts as rounding."""
 
 
 @dataclass(frozen=True)
 class Conserved:
-    """A polynomial that no control changes."""
+    """A polynomial of the states that is constant for all controls."""
 
     names: tuple[str, ...]
-    """Names of the states in each monomial, joined as formulas have them."""
+    """Monomials as formulas of state names."""
     powers: Array
     """Powers of the states in each monomial, shape (K, n)."""
     coefficients: Array
 
     @property
     def formula(self) -> str:
-        """As people write it."""
+        """Return the polynomial as a formula."""
         text = ""
         for value, name in zip(self.coefficients.tolist(), self.names, strict=True):
             size = "" if abs(abs(value) - 1.0) < SEEN else f"{abs(value):.6g}*"
@@ -52,12 +52,12 @@ class Conserved:
         return text.removeprefix(" + ").strip()
 
     def terms(self, x: Array) -> Array:
-        """Terms of the quantity at states."""
+        """Return the terms of the polynomial at given states."""
         return np.asarray(self.coefficients * np.prod(x**self.powers, axis=1))
 
 
 def contradiction(instance: Instance) -> str:
-    """Why the final states that are asked for cannot follow from the initial ones; empty where nothing says so."""
+    """Return why the required final state cannot follow from the initial one, by a conserved quantity; else empty."""
     names = instance.model.spec.state_names
     fixed = [i for i, name in enumerate(names) if isinstance(instance.final.get(name), float | int)]
     fixed = [i for i in fixed if names[i] not in instance.solver.free_angles]
@@ -76,14 +76,14 @@ def contradiction(instance: Instance) -> str:
 
 
 def conserved(instance: Instance, states: list[int], start: Array, end: Array) -> list[Conserved]:
-    """Independent ones of these states.
+    """Return independent conserved polynomials of the given states.
 
     Parameters
     ----------
     states
-        Their places.
+        Indices of these states.
     start, end
-        All initial and final states, which give their sizes.
+        All initial and final states, which set the scales of the states.
     """
     n, rng = len(start), np.random.default_rng(0)
     kinds = [(i,) for i in states] + list(combinations_with_replacement(states, 2))
@@ -112,7 +112,7 @@ def conserved(instance: Instance, states: list[int], start: Array, end: Array) -
 
 
 def _rates(instance: Instance, x: Array, rng: np.random.Generator) -> Array:
-    """Rates of change at states, under controls and at times that are drawn."""
+    """Return rates of the given states, under random controls and at random times."""
     count = len(instance.model.spec.controls)
     low, high = instance.control_set.around(count)
     largest = np.maximum(np.abs(low), np.abs(high))
@@ -124,7 +124,7 @@ def _rates(instance: Instance, x: Array, rng: np.random.Generator) -> Array:
 
 
 def _reduced(rows: Array) -> Array:
-    """The space that rows span, spanned by rows that have a monomial of their own each."""
+    """Return a basis of the space of rows in which each row has a monomial that the others lack."""
     found = rows.copy()
     for k in range(len(found)):
         place = int(np.abs(found[k]).argmax())
@@ -142,6 +142,6 @@ def _label(names: tuple[str, ...], powers: list[int]) -> str:
 
 
 def _tidied(labels: list[str], powers: Array, coefficients: Array) -> Conserved:
-    """A conserved quantity less what is rounding, its first coefficient being one."""
+    """Return a conserved quantity without coefficients that are rounding, scaled to a first coefficient of 1."""
     seen = np.flatnonzero(np.abs(coefficients) > SEEN * np.abs(coefficients).max())
     return Conserved(tuple(labels[i] for i in seen), powers[seen], coefficients[seen] / coefficients[seen[0]])

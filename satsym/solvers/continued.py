@@ -1,7 +1,7 @@
-"""Continuation: from a problem that is easy to the one that is meant, each solution the guess of the next.
+"""Continuation from an easy problem to the required one, with each solution as the initial guess of the next.
 
-Steps are as long as they succeed. Where the solutions turn back, they are followed by their arc length past the fold,
-as far as they reach the end of the way (:mod:`satsym.solvers.collocation.arclength`).
+Steps grow as long as they succeed. Where the path of solutions turns back, it is followed by arc length past the fold,
+if it leads to the end of the path (:mod:`satsym.solvers.collocation.arclength`).
 """
 
 from __future__ import annotations
@@ -27,33 +27,33 @@ from satsym.status import Status
 from satsym.wording import counted
 
 FIRST, LONGER, SHORTER = 0.2, 1.7, 0.3
-"""The first step, as a share of the way; and the ratios of the next one after a success, and after a failure."""
+"""First step, as a fraction of the path; factors of the next step after a success and after a failure."""
 
 SHORTEST, MOST_STEPS = 1e-3, 200
-"""The step at which the way is given up, and the most steps."""
+"""Step below which the continuation is given up, and maximum number of steps."""
 
 MOST_POINTS = 300
-"""Solutions that are followed past folds."""
+"""Maximum number of solutions that are followed past folds."""
 
 JUMP = 0.5
-"""Relative change of states that two neighbouring solutions may have."""
+"""Largest relative difference of the states of two neighbouring solutions."""
 
 Solver = Callable[[Instance, Progress | None], Solution]
 
 
 @dataclass(frozen=True)
 class _Reached:
-    """How far the way was gone."""
+    """Progress of a continuation."""
 
     share: float
     answers: tuple[Solution, ...]
     folds: int = 0
     failed: Solution | None = None
-    """The last problem tried without an answer nearby."""
+    """Last problem for which no solution nearby was found, otherwise ``None``."""
 
     @property
     def last(self) -> Solution:
-        """The last answer."""
+        """Return the last solution."""
         return self.answers[-1]
 
 
@@ -63,11 +63,11 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
     Parameters
     ----------
     instance
-        With what changes on the way.
+        Instance with the values that change along the path.
     quick
-        Solves on the way.
+        Solver for intermediate problems.
     certified
-        Solves at both ends of the way, with a certificate.
+        Solver for both ends of the path, with a certificate.
     """
     began = time.perf_counter()
     first = certified(at(instance, 0.0), progress)
@@ -93,7 +93,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
 
 
 def at(instance: Instance, share: float) -> Instance:
-    """The problem at a share of the way."""
+    """Return the problem at a fraction of the path."""
     found = replace(instance, continuation=())
     for one in instance.continuation:
         found = one.at(found, share)
@@ -101,7 +101,7 @@ def at(instance: Instance, share: float) -> Instance:
 
 
 def _stepped(instance: Instance, reached: _Reached, progress: Progress | None, quick: Solver) -> _Reached:
-    """As far as solutions are near their neighbours."""
+    """Continue in steps as long as successive solutions are close to each other, and return the progress."""
     step = FIRST
     for _ in range(MOST_STEPS):
         if reached.share >= 1.0 or step < SHORTEST:
@@ -118,7 +118,7 @@ def _stepped(instance: Instance, reached: _Reached, progress: Progress | None, q
 
 
 def _past_folds(instance: Instance, reached: _Reached, progress: Progress | None, quick: Solver) -> _Reached:
-    """Go on along the arc length past folds; what was reached stays where that leads nowhere, or has no meaning."""
+    """Continue by arc length past folds; the progress is unchanged if that fails or does not apply."""
     spec = instance.model.spec
     if spec.switching or spec.directional or instance.free:
         return reached
@@ -140,7 +140,7 @@ def _past_folds(instance: Instance, reached: _Reached, progress: Progress | None
 
 
 def _followed(instance: Instance, reached: _Reached) -> tuple[Point, int] | None:
-    """A minimum at the end of the way, on the path of the last solution, and how often that path turned back."""
+    """Return a minimum at the end of the path of extremals, and the number of folds passed, or ``None``."""
     left = 1.0 - reached.share
     start = _guessed(instance, reached.share, reached.last)
     times = reached.last.times
@@ -168,7 +168,7 @@ def _followed(instance: Instance, reached: _Reached) -> tuple[Point, int] | None
 
 
 def _guessed(instance: Instance, share: float, last: Solution) -> Instance:
-    """The problem at a share of the way with the last answer as its guess."""
+    """Return the problem at a fraction of the path with the last solution as its initial guess."""
     case = at(instance, share)
     for unknown in case.free:
         case = unknown.at(case, unknown.of(last.instance))
@@ -178,7 +178,7 @@ def _guessed(instance: Instance, share: float, last: Solution) -> Instance:
 
 
 def _near(before: Solution, after: Solution) -> bool:
-    """Whether two solutions are of one family, by their states over the same shares of the time."""
+    """Return whether two solutions are close, comparing their states at equal fractions of the duration."""
     share = np.linspace(0.0, 1.0, 101)
     rows = [
         np.array([np.interp(share, (one.times - one.times[0]) / np.ptp(one.times), row) for row in one.x])
@@ -194,7 +194,7 @@ def _values(instance: Instance, share: float) -> str:
 
 
 def _told(instance: Instance, found: Solution, message: str, answers: tuple[Solution, ...], began: float) -> Solution:
-    """A solution with how it came about, of the instance as it was asked."""
+    """Return a solution with a message, intermediate solutions and totals, for the instance as it was given."""
     asked = replace(at(instance, 1.0), continuation=instance.continuation)
     for unknown in instance.free:
         asked = unknown.at(asked, unknown.of(found.instance))

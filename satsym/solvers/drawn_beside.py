@@ -1,11 +1,12 @@
-"""Extremals that may cost less than a known one, drawn from both ends: in its duration or, where that is free, in any.
+"""Random extremals from both ends that may combine to a cheaper motion than a known extremal, for given or free times.
 
-What costs less pushes no harder, so that costates are drawn about as large as those that are known; where the duration
-is free, so large that H vanishes, as it does all along then, and motions may meet after any time.
+A cheaper motion needs no larger controls, so that random costates have about the magnitudes of the known ones; if the
+duration is free, they are scaled such that H vanishes, as it does along the whole motion then, and motions may meet
+after any time.
 
-Where an extremal drawn from the initial state comes close to one drawn backwards from the end, the two are almost a
-motion from end to end, and no control does either part for less. Where motions swing, only those arrive that push at
-the right times, as costates do; and what is unstable onwards is stable backwards.
+If an extremal from the initial state comes close to one integrated backwards from the final state, the two nearly form
+a motion between both ends, and each is extremal for its part. If motions oscillate, only controls with the right timing
+arrive, as costates provide it; and motions that are unstable forwards are stable backwards.
 """
 
 from __future__ import annotations
@@ -22,72 +23,73 @@ from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.spare_time import longest
 
 STEPS, LONGER = 100, 2.4
-"""Runge-Kutta steps in the known duration, and so many times as many at most in the longest one where that is free."""
+"""Number of Runge-Kutta steps in the known duration, and largest ratio of a free duration to the known one."""
 
 DRAWN, SIZES = 512, (-1.5, 0.7)
-"""Extremals that are drawn on each side, and decimal logarithms of sizes of their costates, as shares of the largest
-known."""
+"""Number of random extremals from each end, and range of the decimal logarithm of their costates' magnitudes, relative
+to the largest known one."""
 
 ROUNDS, CHILDREN, PARENTS, NEAR_GAP = (0.3, 0.1), 256, 48, 0.15
-"""Relative changes of costates by which further ones are drawn, how many each time, and about how many pairs: the
-cheapest whose gaps are below that."""
+"""Relative changes of costates for further extremals in successive rounds; number of these extremals in each round;
+number of the cheapest pairs from which they are derived; largest gap of these pairs."""
 
 TIMES, ANY_TIMES, NEIGHBOURS = 8, 40, 4
-"""Times at which they may meet, where the duration is given and where it is free, and how many of the nearest of the
-other side are looked at."""
+"""Number of times at which extremals may meet, for a given and for a free duration; number of nearest extremals from
+the other end that are compared."""
 
 CLOSE_GAP, FEWEST, MOST_PAIRS = 0.1, 64, 4000
-"""Gaps that are small, relative to what the known states range over, pairs that are looked at if none is, and at most.
-"""
+"""Gap that counts as small, relative to the range of the known states; number of pairs that are used if none has a
+small gap; maximum number of pairs."""
 
 KEPT, SEPARATION, SHOWN = 4, 0.3, 21
-"""Motions that are kept, how far they are from each other and from the known one, and at how many times that is looked
-at. A duration that is longer by that share is another motion as well."""
+"""Maximum number of motions that are returned; minimum difference between these and from the known one, relative to the
+range of the states or, for durations, as a difference of logarithms; number of times at which motions are compared."""
 
 SEARCHED, HALVINGS = np.geomspace(1e-3, 1e2, 26), 12
-"""Sizes of costates, as shares of the known ones, between which H changes its sign, and halvings of that."""
+"""Magnitudes of costates, relative to the known ones, between which a sign change of H is searched for, and number of
+bisections."""
 
 SAMPLES = 401
-"""Even times at which a known extremal is sampled."""
+"""Number of evenly spaced times at which a known extremal is sampled."""
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """An extremal, scaled as its problem is, which has its duration."""
+    """A known extremal in scaled variables; its problem has the same duration."""
 
     states: Array
-    """At evenly spaced times, shape (n, M)."""
+    """States at evenly spaced times, shape (n, M)."""
     costates: Array
-    """At the same."""
+    """Costates at the same times, shape (n, M)."""
     cost: float
     longest: float
-    """The longest duration of others; its own where that is given."""
+    """Longest duration of other motions, equal to its own if that is given."""
     free: bool = False
-    """Whether others may have any duration up to that."""
+    """Whether other motions may have any duration up to the longest."""
 
     @property
     def size(self) -> float:
-        """The largest norm of its costates."""
+        """Return the largest norm of the costates."""
         return float(np.linalg.norm(self.costates, axis=0).max())
 
 
 @dataclass(frozen=True, eq=False)
 class Beside:
-    """Another motion, almost an extremal."""
+    """Another motion that is approximately an extremal."""
 
     duration: float
     z: Array
-    """Scaled states and costates at evenly spaced times, shape (2n, M); a jump between both parts is spread over them.
-    """
+    """Scaled states and costates at evenly spaced times, shape (2n, M); the gap between both parts is distributed over
+    them."""
 
     @property
     def states(self) -> Array:
-        """Scaled states at the times, shape (n, M)."""
+        """Return the scaled states at these times, shape (n, M)."""
         return self.z[: len(self.z) // 2]
 
 
 def about(solution: Solution, problem: TwoPoint, seed: int) -> list[Beside]:
-    """See :func:`beside`: of a solution, in its problem at its duration."""
+    """Return motions near a solution as :func:`beside` does, in its problem at its duration."""
     even = np.linspace(solution.times[0], solution.times[-1], SAMPLES)
     z = [np.interp(even, solution.times, row) for row in (*solution.x, *solution.lam)] / problem.scale.both
     n, free = problem.states, solution.instance.tf is None
@@ -96,12 +98,12 @@ def about(solution: Solution, problem: TwoPoint, seed: int) -> list[Beside]:
 
 
 def beside(problem: TwoPoint, known: Known, rng: np.random.Generator) -> list[Beside]:
-    """Different motions that nearly meet, and would cost less if they did, the cheapest first.
+    """Return different motions that nearly meet and would cost less if they did, the cheapest first.
 
     Parameters
     ----------
     problem
-        With its bounds, and with the duration of what is known.
+        Problem with its bounds, and with the duration of the known extremal.
     """
     if problem.unknowns or not problem.fixed.any() or not known.size > 0.0:
         return []
@@ -123,7 +125,7 @@ def _directions(n: int, count: int, rng: np.random.Generator) -> Array:
 
 
 def _of_given(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
-    """Extremals in the known duration."""
+    """Return random extremals with the known duration."""
     first, last = (
         _directions(problem.states, DRAWN, rng) * known.size * 10.0 ** rng.uniform(*SIZES, DRAWN) for _ in range(2)
     )
@@ -133,7 +135,7 @@ def _of_given(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Fie
 
 
 def _of_any_duration(problem: TwoPoint, known: Known, rng: np.random.Generator) -> _Field:
-    """Extremals with which H vanishes, up to the longest duration."""
+    """Return random extremals with vanishing H, up to the longest duration."""
     steps = int(np.ceil(STEPS * min(known.longest / problem.duration, LONGER)))
     nothing = Bundle(np.zeros((steps + 1, 2 * problem.states, 0)), np.zeros((steps + 1, 0)))
     field = _Field(problem, known, known.longest, True, nothing, nothing)
@@ -141,7 +143,7 @@ def _of_any_duration(problem: TwoPoint, known: Known, rng: np.random.Generator) 
 
 
 def _vanishing(problem: TwoPoint, state: Array, directions: Array, size: float) -> Array:
-    """Costates of these directions with which H vanishes at a state; those with which it does not are left out."""
+    """Return costates in given directions for which H vanishes at a state, without directions that have none."""
     state = np.repeat(state[:, None], directions.shape[1], axis=1)
     model, p = problem.instance.model, problem.instance.parameters
     tau = np.zeros(directions.shape[1])
@@ -167,9 +169,10 @@ def _vanishing(problem: TwoPoint, state: Array, directions: Array, size: float) 
 
 @dataclass(frozen=True, eq=False)
 class _Field:
-    """Extremals of both sides.
+    """Random extremals from both ends.
 
-    A pair of them is a row: node of the one from the start, node of the one to the end, these two, gap and cost.
+    A pair of them is a row of six numbers: node on the forward extremal, node on the backward extremal, indices of the
+    two extremals, gap, and cost.
     """
 
     problem: TwoPoint
@@ -180,7 +183,7 @@ class _Field:
     backwards: Bundle
 
     def joined(self, first: Array, last: Array, rng: np.random.Generator) -> _Field:
-        """The field with extremals that have such costates, sized so that H vanishes where durations are free."""
+        """Return the field with extremals of given costates added, scaled for vanishing H if durations are free."""
         problem, steps = self.problem, len(self.onwards.z) - 1
         if not self.free:
             onwards = _from_start(problem, first, steps)
@@ -196,7 +199,7 @@ class _Field:
         return replace(self, onwards=self.onwards.joined(onwards), backwards=self.backwards.joined(backwards))
 
     def refined(self, size: float, rng: np.random.Generator) -> _Field:
-        """The field with others about the cheapest and the closest pairs, so far away relative to their costates."""
+        """Return the field with further extremals added, near the cheapest and the closest pairs."""
         n, pairs = self.problem.states, self.cheapest(NEAR_GAP)
         pairs = pairs[:PARENTS]
         if not len(pairs):
@@ -210,12 +213,12 @@ class _Field:
 
     @property
     def unit(self) -> Array:
-        """What the known states range over, shape (n,)."""
+        """Return the ranges of the known states, shape (n,)."""
         found = np.ptp(self.known.states, axis=1)
         return np.asarray(np.where(found > 0.0, found, max(float(found.max()), 1e-300)))
 
     def cheapest(self, gap: float) -> Array:
-        """Pairs that cost less than what is known and have gaps below that, or the closest few, the cheapest first."""
+        """Return pairs cheaper than the known extremal with gaps below a limit, at least some; cheapest first."""
         found = self._pairs
         found = found[found[:, 5] < self.known.cost]
         found = found[np.argsort(found[:, 4])]
@@ -224,7 +227,7 @@ class _Field:
 
     @property
     def _pairs(self) -> Array:
-        """Pairs that are close, shape (P, 6)."""
+        """Return pairs of extremals that are close to each other, shape (P, 6)."""
         from scipy.spatial import cKDTree
 
         steps, found = len(self.onwards.z) - 1, [np.zeros((0, 6))]
@@ -246,14 +249,14 @@ class _Field:
         return np.concatenate(found)
 
     def _points(self, side: Bundle, nodes: NDArray[np.int64]) -> _Points:
-        """Where extremals of one side are at some nodes."""
+        """Return the states of extremals from one end at given nodes."""
         n, costs = self.problem.states, side.costs[nodes]
         at, which = np.nonzero(np.isfinite(costs) & (costs < self.known.cost))
         states = side.z[nodes[at], :n, which].T / self.unit[:, None]
         return _Points(states, costs[at, which], np.array([nodes[at], which]))
 
     def different(self) -> list[Beside]:
-        """The cheapest pairs that are not close to one before, nor to what is known."""
+        """Return the cheapest pairs as motions that differ from each other and from the known extremal."""
         pairs, n = self.cheapest(CLOSE_GAP)[:MOST_PAIRS], self.problem.states
         motions, durations = self._motions(pairs, SHOWN)
         motions = motions[:, :n]
@@ -275,7 +278,7 @@ class _Field:
         return kept
 
     def _motions(self, pairs: Array, count: int = 0) -> tuple[Array, Array]:
-        """States and costates at shares of the durations of pairs, or at all nodes of one, and these durations."""
+        """Return states and costates at fractions of pairs' durations, or at all nodes of one, and the durations."""
         steps = len(self.onwards.z) - 1
         first, second, one, other = pairs[:, :4].astype(int).T
         lasting = first + steps - second
@@ -293,39 +296,40 @@ class _Field:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """States through which randomly drawn extremals pass at given nodes, divided by the sizes of the known solution's.
+    """States of random extremals at given nodes, divided by the ranges of the known states.
 
-    ``costs`` are the costs of these extremals up to those nodes.
+    ``costs`` are the costs of these extremals up to these nodes or, from the other end, after them.
     """
 
     states: Array
     costs: Array
     places: NDArray[np.int64]
-    """Node and number of each, shape (2, P)."""
+    """Node and index of each extremal, shape (2, P)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bundle:
-    """Extremals that are drawn through one state, or to one end."""
+    """Random extremals from the initial state, or backwards from the final state."""
 
     z: Array
     """Scaled states and costates at the nodes in order of time, shape (STEPS + 1, 2n, S)."""
     costs: Array
-    """Up to the nodes, or from there to the end, shape (STEPS + 1, S); infinite once the motion has left its domain."""
+    """Costs up to the nodes, or from the nodes to the end, shape (STEPS + 1, S); infinite after the motion has left the
+    domain."""
 
     def joined(self, other: Bundle) -> Bundle:
-        """Both bundles as one."""
+        """Return both bundles as one."""
         return Bundle(np.concatenate([self.z, other.z], axis=2), np.concatenate([self.costs, other.costs], axis=1))
 
 
 def _from_start(problem: TwoPoint, costates: Array, steps: int) -> Bundle:
-    """Extremals from the initial state with these costates, shape (n, S), for the whole duration."""
+    """Return extremals from the initial state with given costates, shape (n, S), over the whole duration."""
     start = np.repeat(problem.initial[:, None], costates.shape[1], axis=1)
     return simulated(problem, np.concatenate([start, costates]), problem.duration, steps)
 
 
 def _to_end(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.Generator, steps: int) -> Bundle:
-    """Extremals to the end; a free final state is that of a motion from the start, and transversality holds for it."""
+    """Return extremals to the final state; free final states come from forward motions, with transversality."""
     n, free, reached = problem.states, ~problem.fixed, np.flatnonzero(np.isfinite(onwards.costs[-1]))
     count = costates.shape[1]
     end, terminal = np.repeat(straight(problem)[:, 1:], count, axis=1), np.zeros(count)
@@ -339,7 +343,7 @@ def _to_end(problem: TwoPoint, onwards: Bundle, costates: Array, rng: np.random.
 
 
 def simulated(problem: TwoPoint, z: Array, lasting: float, steps: int) -> Bundle:
-    """Extremals through states and costates, shape (2n, S), for so long; back from the end where that is negative."""
+    """Return extremals through given states and costates, (2n, S), over a duration; backwards if it is negative."""
     backwards, theta = lasting < 0.0, problem.theta
     tau = lasting / problem.duration * np.linspace(0.0, 1.0, 2 * steps + 1) + backwards
     times, h = np.repeat(tau[:, None], z.shape[1], axis=1), lasting / steps

@@ -1,8 +1,8 @@
-"""Limits of the end: final states in ranges, and inequalities that hold at the end.
+"""Limits of the final state: ranges of final states, and inequalities at the final time.
 
-The problem with some of these limits met and no other one stated is one like any other. Which are met is read from a
-motion that the search finds; from there, limits are taken where the answer is beyond them, and left where their
-multipliers pull. Competitors are motions that end anywhere within the limits.
+With some of these limits active and the others ignored, the problem is one without limits. The active limits are read
+from a motion of the direct search; then violated limits are added, and limits with multipliers of the wrong sign
+removed. Competitors are motions that end anywhere within the limits.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from satsym.status import BadInput, Status
 from satsym.wording import counted
 
 CHANGES = 20
-"""Choices of limits that follow from one another, at most."""
+"""Maximum number of successive choices of active limits."""
 
 WORK, STARTS = 2_500_000, 3
-"""Columns that the method may linearise for limits that may be the wrong ones, as such a problem may have no answer.
-And starts for the motion from which limits are read."""
+"""Maximum number of columns that may be linearised for one choice of limits, since a wrong choice may have no solution;
+and maximum number of starts for the motion from which limits are read."""
 
 ROUNDS = 3
-"""Answers that ask for other limits once they have a certificate, at most."""
+"""Maximum number of certified answers that require other limits."""
 
 Met = Mapping[str, Side]
 Solver = Callable[[Instance, Progress | None], Solution]
 
 
 def solve(instance: Instance, progress: Progress | None, quick: Solver, last: Solver) -> Solution:
-    """Solve an instance whose end has limits.
+    """Solve an instance whose final state has limits.
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
     progress
         Called after each iteration.
     quick
-        Solves with ends given or free, for one choice of limits after the other.
+        Solver for given or free final states, used for one choice of limits after the other.
     last
-        The same for the answer, with its certificate where one is asked for.
+        Solver for the answer, with its certificate if one is required.
 
     Raises
     ------
     BadInput
-        If the problem is refused whatever limits are met.
+        If the problem is refused for every choice of limits.
     """
     began = time.perf_counter()
     if why := never(instance):
@@ -87,7 +87,7 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
 
 @dataclass(eq=False)
 class Trials:
-    """Solves with one choice of limits after the other, and remembers what came of it."""
+    """Solver for one choice of active limits after the other, which keeps the results."""
 
     instance: Instance
     progress: Progress | None
@@ -96,10 +96,10 @@ class Trials:
     known: dict[frozenset[tuple[str, Side]], Solution] = field(default_factory=dict)
     refused: list[BadInput] = field(default_factory=list)
     late: bool = False
-    """Whether time was up before all that was wanted was solved."""
+    """Whether the time limit was reached before all required problems were solved."""
 
     def following(self, met: Met) -> Solution | None:
-        """The first solution that asks for no other limits than its own, from a choice on; ``None`` without one."""
+        """Return the first solution with the right active limits, starting from a given choice, or ``None``."""
         asked: Met | None = met
         seen = list[Met]()
         while asked is not None and asked not in seen and len(seen) < CHANGES:
@@ -116,7 +116,7 @@ class Trials:
         return None
 
     def by(self, solver: Solver, met: Met, work: float) -> Solution:
-        """The solution with these limits by a solver; no answer where time is up, or such an end is refused."""
+        """Return the solution with given active limits; no answer if time is up or the end is refused."""
         begun = iteration.hurried(self.instance, self.deadline)
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
@@ -132,12 +132,12 @@ class Trials:
         return found
 
     def unanswered(self) -> Solution:
-        """No answer, and why.
+        """Return a solution without an answer, and the reason.
 
         Raises
         ------
         BadInput
-            What is refused with all limits that were tried.
+            If the problem was refused for all limits that were tried.
         """
         if len(self.refused) == len(self.known):
             raise self.refused[0]
@@ -158,7 +158,7 @@ class Trials:
 
 
 def _message(solution: Solution) -> str:
-    """The solver's, and which limits of the end are met."""
+    """Return the solver's message with the active limits added."""
     if not solution.status.answered:
         return solution.message
     met = solution.instance.met

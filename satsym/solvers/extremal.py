@@ -1,4 +1,4 @@
-"""What the methods for given ends share: limits, history, and how an extremal becomes a solution."""
+"""Common parts of the methods for given ends: limits, history, and the conversion of an extremal into a solution."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from satsym.solvers.iteration import Limits, watched
 from satsym.status import Status
 
 BESIDE = 1e-9
-"""Share of the duration by which nodes lie before and after a jump."""
+"""Distance of nodes from a jump on both sides, relative to the duration."""
 
 Method = Callable[[Instance, Limits], Extremal]
-"""From an instance to an extremal."""
+"""Function from an instance and limits to an extremal."""
 
 
 def without_numbers(instance: Instance, error: Exception) -> Extremal:
-    """No answer, because arithmetic failed on the way."""
+    """Return no extremal, because the computation failed numerically."""
     return nothing(instance, Status.NON_FINITE, f"arithmetic fails on the way ({error})")
 
 
 def nothing(instance: Instance, status: Status, message: str) -> Extremal:
-    """No answer, nor anything that led towards one."""
+    """Return no extremal, and no trajectory either."""
     n, duration = len(instance.initial), 1.0 if instance.tf is None else instance.tf - instance.t0
     problem = TwoPoint(instance, (0.0,) * 3 * n, duration, Scale(np.ones(n), 1.0))
     empty = np.full((2 * n, 2), np.nan)
@@ -48,11 +48,11 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
     Parameters
     ----------
     instance
-        With final states given, on the reference or free, and a final time that is given or free.
+        Instance with final states given, on the reference or free, and a given or free final time.
     progress
-        Called after each step of the method, and each phase.
+        Function that is called after each step of the method, and each phase.
     method
-        Finds an extremal; warnings about arithmetic are off while it does.
+        Function that finds an extremal; numerical warnings are switched off for it.
     """
     began = time.perf_counter()
     limits, history = watched(instance, progress)
@@ -115,12 +115,12 @@ def _solution(
 
 
 def _own(met: list[Array], control: int, within: ControlSet) -> list[Array]:
-    """Times at which the bounds of one control are met, of the times of all; on a ball the bound is everyone's."""
+    """Return the times at which the bounds of one control are met, from those of all; a norm bounds all controls."""
     if within.parts:
         return [row for row, places in zip(met, within.limited, strict=False) if control in places]
     return met[control :: len(within.lower)] if within.kind == "box" else met
 
 
 def _times(rows: list[Array], t0: float, elapsed: float) -> tuple[float, ...]:
-    """Switching times in the model's unit, in order."""
+    """Return switching times in the model's unit, in ascending order."""
     return tuple(sorted(t0 + elapsed * float(tau) for row in rows for tau in row))

@@ -1,4 +1,4 @@
-"""What may become of numbers on the way to a solution, and that it ends one attempt only."""
+"""Numerical failures that end a single attempt, but not the whole computation."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from satsym.solvers.simulation.extrapolation import NotFinite
 Found = TypeVar("Found")
 
 FAILURES = (NotFinite, ArithmeticError, ValueError)
-"""Numbers that are not finite, scalars beyond the domain of a function (``math`` raises ValueError for these), matrices
-that have no inverse (a ValueError too)."""
+"""Errors of values that are not finite, of scalars outside the domain of a function (``math`` raises ValueError for
+these), and of singular matrices (a ValueError too)."""
 
 
 def tried(step: Callable[[], Found]) -> Found | None:
-    """What comes of a step; ``None`` where its numbers fail."""
+    """Return the result of a step, or ``None`` if it fails numerically."""
     try:
         return step()
     except FAILURES:

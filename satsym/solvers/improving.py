@@ -1,4 +1,4 @@
-"""A solution with its certificate; where that knows a cheaper competitor, the solution to which this leads instead."""
+"""Solutions with certificates, replaced by the solution near a cheaper competitor if the certificate finds one."""
 
 from __future__ import annotations
 
@@ -25,43 +25,43 @@ from satsym.solvers.search.tried import Past
 from satsym.status import Status, Verdict
 
 ROUNDS = 3
-"""Cheaper competitors that are taken for the solution, one after the other."""
+"""Maximum number of cheaper competitors that successively replace the solution."""
 
 SWITCHED = "bang-bang"
-"""A method whose extremals are not departed from, nor those of boundary arcs: descents of other problems keep neither
-to controls that switch nor to path constraints."""
+"""Method whose saddle points are not left, like those with boundary arcs: the descents used here keep neither switching
+controls nor path constraints."""
 
 SAMPLES = 401
-"""Values of a guess."""
+"""Number of values in an initial guess."""
 
 Solver = Callable[[Instance, Progress | None], Solution]
 
 DOUBLINGS = 12
-"""How often a change is doubled, from the size of the control on that moves the state by its own size."""
+"""Number of doublings of a control change, starting from the control that moves the state by its own magnitude."""
 
 FALLS = 6
-"""Last ones of these over which the cost must fall at least in proportion."""
+"""Number of last doublings over which the cost has to fall at least in proportion to the change."""
 
 PROPORTIONAL = 1.9
-"""Growth of the fall from one doubling to the next that counts so."""
+"""Minimum ratio of successive decreases of the cost that counts as proportional."""
 
 KEPT = 1e-6
-"""Relative miss of the end beside what the change would have moved it."""
+"""Largest miss of the end, relative to the effect that the change could have had."""
 
 DEPARTED = (0.5, -0.5, 0.1, -0.1)
-"""Shares of that size by which a motion departs from a saddle."""
+"""Fractions of this change by which a motion departs from a saddle point."""
 
 PIECES = 50
-"""Most pieces of the motion on each of which the control's change is constant."""
+"""Maximum number of pieces of the motion on which the change of the control is constant."""
 
 NUDGE = 1e-6
-"""Relative change of states and costates that shows how the control law follows them."""
+"""Relative change of states and costates for differences of the control law."""
 
 
 def improved(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
-    """Solve an instance, and again from each competitor that is cheaper than what was found.
+    """Solve an instance, and again from each competitor that is cheaper than the solution found.
 
-    An instance with a guess of its own has the solution to which that leads: what is cheaper is only said.
+    For an instance with an initial guess the solution near this guess is kept; a cheaper one is only mentioned.
 
     Parameters
     ----------
@@ -102,14 +102,14 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 
 
 def goes_on(solution: Solution) -> bool:
-    """Whether :func:`improved` looks for a lower cost than that of a solution whose certificate has no competitors."""
+    """Return whether :func:`improved` looks for a lower cost although the certificate lists no cheaper competitor."""
     certificate, lasting = solution.certificate, (BOUNDARY_ARCS, SWITCHED)
     extremal = certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY
     return extremal and solution.method not in lasting
 
 
 def bottomless(solution: Solution) -> Solution | None:
-    """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
+    """Return no answer if a stationary solution has ever cheaper controls; ``None`` if none are found."""
     constrained = solution.instance.model.spec.in_arcs  # of which descents know nothing
     endless = None if constrained or solution.method == SWITCHED else fall(solution)
     if endless is None:
@@ -122,7 +122,7 @@ def bottomless(solution: Solution) -> Solution | None:
 
 
 def without_minimiser(solution: Solution, message: str) -> Solution:
-    """No answer in place of a solution, because there is always a cheaper one."""
+    """Return no answer in place of a solution, because there is always a cheaper one."""
     x, u, lam = (np.full_like(row, np.nan) for row in (solution.x, solution.u, solution.lam))
     return replace(
         solution,
@@ -138,7 +138,7 @@ def without_minimiser(solution: Solution, message: str) -> Solution:
 
 
 def starting_from(solution: Solution) -> Instance:
-    """The instance of a solution with its states and costates as the guess, resampled evenly."""
+    """Return the instance of a solution with its states and costates as initial guess, resampled evenly."""
     instance, names = solution.instance, solution.instance.model.spec.state_names
     times = np.linspace(float(solution.times[0]), float(solution.times[-1]), SAMPLES)
     rows = [tuple(np.interp(times, solution.times, row).tolist()) for row in (*solution.x, *solution.lam)]
@@ -148,14 +148,14 @@ def starting_from(solution: Solution) -> Instance:
 
 
 def _begun(instance: Instance, better: Solution) -> Instance:
-    """An instance with what another solution chose of what is free at the start and among the parameters."""
+    """Return an instance with the free initial values and parameters of another solution."""
     for unknown in instance.free:
         instance = unknown.at(instance, unknown.of(better.instance))
     return instance
 
 
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
-    """What a saddle's descents lead to; ``None`` where that is not cheaper."""
+    """Return a cheaper solution found by descending from a saddle point, or ``None``."""
     if solution.method == SWITCHED or solution.instance.model.spec.in_arcs:
         return None
     for start in _departures(solution):
@@ -168,7 +168,7 @@ def _departed(solver: Solver, solution: Solution, progress: Progress | None, dea
 def _again(
     start: Instance, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
 ) -> Solution | None:
-    """The solution to which an instance with a guess leads; ``None`` where it is not cheaper, or time is up."""
+    """Return the solution of an instance with an initial guess; ``None`` if it is not cheaper or time is up."""
     instance, begun = solution.instance, iteration.hurried(start, deadline)
     if begun is None:
         return None
@@ -182,17 +182,16 @@ def _again(
 
 
 def fall(solution: Solution) -> str | None:
-    """What shows that the cost falls without end from an extremal that is no minimum; ``None`` where nothing does.
+    """Return a text if the cost falls without limit from an extremal that is no minimum; otherwise ``None``.
 
-    The control is changed along the direction in which the second variation is least, or towards a control far away
-    that costs less, to both sides. Where twice as large a change, again and again, leaves the end as it is asked for
-    and the cost falls at least in proportion, no control is the best one: of linear problems with quadratic costs this
-    decides, of others it is evidence.
+    The control is changed in both senses along the direction of the smallest second variation, or towards a distant
+    cheaper control. If repeated doubling of the change keeps the end and lowers the cost at least in proportion, there
+    is no optimum: for linear-quadratic problems this is conclusive, for others it is evidence.
 
     Parameters
     ----------
     solution
-        With a given final time; controls that have bounds are not asked.
+        Solution with a given final time; problems with control bounds are not tested.
     """
     if solution.instance.control_set.bounded:
         return None
@@ -205,7 +204,7 @@ def fall(solution: Solution) -> str | None:
 
 
 def _departures(solution: Solution) -> list[Guess]:
-    """Motions to both sides of an extremal that is no minimum, along which the cost falls at first; none elsewhere."""
+    """Return motions on both sides of a saddle point along which the cost falls at first; empty elsewhere."""
     found = _downhill(solution)
     if found is None:
         return []
@@ -219,7 +218,7 @@ def _departures(solution: Solution) -> list[Guess]:
 
 
 def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
-    """The control of an extremal on a grid, and the change along which the second variation is most negative."""
+    """Return the control of an extremal on a grid and the change with the most negative second variation."""
     simulations = simulations_of(solution)
     if solution.instance.tf is None or simulations is None:
         return None
@@ -238,7 +237,7 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
 
 
 def _keeping_the_end(simulations: Simulations, grid: Grid, u: Array, change: Array, found: Along) -> Array:
-    """A change without what the grid makes of the end, to first order: on its steps changes are no constants."""
+    """Return a change of the control corrected to keep the end to first order on the grid."""
     ties = found.second.ties[:-1]  # the last keeps the duration
     if not len(ties):
         return change
@@ -252,13 +251,13 @@ def _keeping_the_end(simulations: Simulations, grid: Grid, u: Array, change: Arr
 
 
 def _far(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
-    """The control of a minimum on a grid, and the change to one far from it that costs less."""
+    """Return the control of a minimum on a grid, and the change to a distant cheaper control, or ``None``."""
     drawn = drawn_below(solution) if solution.instance.tf is not None else None
     return None if drawn is None else (drawn.simulations, drawn.grid, drawn.stated, drawn.control - drawn.stated)
 
 
 def _doubled(simulations: Simulations, grid: Grid, u: Array, change: Array) -> str | None:
-    """The costs of changing a control by more and more, in words, where they fall without end."""
+    """Return costs of repeatedly doubled control changes as text if they fall without limit, otherwise ``None``."""
     instance = simulations.instance
     cost, end = simulations(u, grid)
     _, pushed = simulations(u + change, grid)
@@ -285,15 +284,16 @@ def _doubled(simulations: Simulations, grid: Grid, u: Array, change: Array) -> s
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """The second variation along a smooth extremal as one arc, and how its control follows changes."""
+    """The second variation along a smooth extremal as one arc, and the response of its control to variations."""
 
     second: Quadratic
     feedback: Array
     direct: Array
-    """The control by the states and by what changes by itself, in units, shapes (2 N + 1, m, n)."""
+    """Responses of the control to variations of the states and to its own variations, scaled, shapes (2 N + 1, m,
+    n)."""
 
     def controls(self, direction: Array) -> Array:
-        """What a direction does to the controls at nodes and midpoints of the grid, shape (m, 2 N + 1)."""
+        """Return the control variation at nodes and midpoints, (m, 2 N + 1), for a direction of the form."""
         (arc,), n = self.second.arcs, self.feedback.shape[2]
         (h, per), x, found = arc.widths, np.zeros(n + 1), []
         length, unit = direction[0] * arc.lasting, np.sqrt(2.0 / (h * per))
@@ -310,12 +310,12 @@ class Along:
 
 
 def along(solution: Solution, grid: Grid) -> Along | None:
-    """The second variation of a solution; ``None`` where numbers fail.
+    """Return the second variation of a solution; ``None`` if values are not finite.
 
     Parameters
     ----------
     grid
-        On which the linearised motion is integrated.
+        Grid on which the linearised motion is integrated.
     """
     instance, n, t = solution.instance, len(solution.x), interleave(grid.nodes, grid.midpoints)
     model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
@@ -335,7 +335,7 @@ def along(solution: Solution, grid: Grid) -> Along | None:
 
 
 def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
-    """The control law by scaled states and costates, by differences, shape (M, m, 2n)."""
+    """Return derivatives of the control law by scaled states and costates, by differences, shape (M, m, 2n)."""
     instance, n = solution.instance, len(z) // 2
     size = np.maximum(np.abs(z).max(axis=1), NUDGE * scale)
     change = NUDGE * size[:, None] * np.concatenate([np.eye(2 * n), -np.eye(2 * n)], axis=1)

@@ -1,4 +1,4 @@
-"""Init, step, terminate: how the iterative solvers run, with history, progress and limits."""
+"""Iteration of solvers (initialise, step, terminate), with history, progress and limits."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ from satsym.wording import counted
 State = TypeVar("State")
 
 MOST_ITERATIONS = 500
-"""Iterations where an instance sets no limit."""
+"""Maximum number of iterations if an instance sets none."""
 
 
 class Method(Protocol[State]):
     """An iterative solver as three pure functions of its state."""
 
     def init(self) -> State:
-        """The starting point."""
+        """Return the initial state of the iteration."""
 
     def step(self, state: State) -> State:
-        """One iteration."""
+        """Return the state after one iteration."""
 
     def terminate(self, state: State) -> tuple[Status, str] | None:
-        """Why to stop, or ``None`` to go on."""
+        """Return why to stop, or ``None`` to continue."""
 
     def measure(self, state: State, number: int) -> Iteration:
-        """The line of this state in the history."""
+        """Return the line of a state in the history."""
 
 
 @dataclass
 class Meter:
-    """Work that was done, in columns (points of a mesh, steps of an integration) at which a motion was linearised."""
+    """Amount of work done, in columns (points of a mesh, steps of an integration) at which a motion was linearised."""
 
     spent: int = 0
 
 
 class TimeUp(Exception):
-    """The time is over in the midst of what does not iterate, such as a long trajectory."""
+    """Raised if the time limit is reached in a computation that does not iterate, such as a long trajectory."""
 
 
 class _Helpers(threading.local):
-    """Seconds of a processor that threads of libraries have had, which worked for the thread that asks."""
+    """Processor time, in seconds, of library threads that worked for the present thread."""
 
     seconds = 0.0
 
@@ -61,71 +61,71 @@ _HELPERS = _Helpers()
 
 
 def computed() -> float:
-    """Seconds of a processor that this thread has had, and threads of libraries for it.
+    """Return the processor time, in seconds, of this thread and of library threads that worked for it.
 
-    It is not the time of day: what else a machine does must change no answer.
+    It is not the time of day, so that other work of the machine changes no answer.
     """
     return time.thread_time() + _HELPERS.seconds
 
 
 def count_helpers(seconds: float) -> None:
-    """Count what threads of a library have computed for this thread."""
+    """Add the processor time that threads of a library have used for this thread."""
     _HELPERS.seconds += max(seconds, 0.0)
 
 
 def deadline_of(instance: Instance) -> float:
-    """When the time of an instance that is begun now will be over, on that clock."""
+    """Return the deadline of an instance that is begun now, on the clock of :func:`computed`."""
     return computed() + instance.solver.max_seconds
 
 
 BLOCK = 10_000
-"""Steps of a grid between two looks at the clock."""
+"""Number of grid steps between two checks of the time limit."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """When to give up, and who watches until then.
+    """Limits of a computation, and its observer.
 
-    What a verdict depends on is limited by work, which is the same on every machine; time is there for people.
+    Verdicts depend on limits of work, which are the same on every machine; the time limit serves the user.
     """
 
     iterations: int
-    """Iterations of the method."""
+    """Maximum number of iterations of the method."""
     deadline: float
-    """On the clock of :func:`computed`."""
+    """Deadline on the clock of :func:`computed`."""
     watch: Callable[[float, float], None] | None = None
-    """Told cost and residual after inner steps, for a solver whose phases take long."""
+    """Function that is told cost and residual after inner steps, for a solver whose phases take long."""
     work: float = float("inf")
-    """Columns that may be linearised, see :class:`Meter`."""
+    """Maximum number of columns that may be linearised, see :class:`Meter`."""
     meter: Meter = field(default_factory=Meter)
-    """Shared by all limits that are derived from these."""
+    """Meter of the work done, shared by all limits that are derived from these."""
 
     def tell(self, cost: float, residual: float) -> None:
-        """Tell who watches, if anyone does."""
+        """Tell the observer, if there is one."""
         if self.watch:
             self.watch(cost, residual)
 
     def spend(self, columns: int) -> None:
-        """Count work."""
+        """Add to the work done."""
         self.meter.spent += columns
 
     @property
     def late(self) -> bool:
-        """Whether the time is over."""
+        """Return whether the time limit is reached."""
         return computed() > self.deadline
 
     def check(self) -> None:
-        """Raise :class:`TimeUp` if the time is over."""
+        """Raise :class:`TimeUp` if the limits are reached."""
         if self.expired:
             raise TimeUp
 
     def in_blocks(self, function: Callable[[NDArray[Any]], Array], places: NDArray[Any]) -> Array:
-        """Values of a function at many places, shape (rows, M), with a look at the clock now and then.
+        """Return the values of a function at many points, shape (rows, M), checking the limits between blocks.
 
         Raises
         ------
         TimeUp
-            If the time is over and more than a block is left: few places are never too late.
+            If the limits are reached and more than a block is left; a single block is always computed.
         """
         found = []
         for first in range(0, len(places), BLOCK):
@@ -136,12 +136,12 @@ class Limits:
 
     @property
     def expired(self) -> bool:
-        """Whether the time is over, or all work done that may be."""
+        """Return whether the limit of time or of work is reached."""
         return self.meter.spent > self.work or self.late
 
 
 def hurried(instance: Instance, deadline: float) -> Instance | None:
-    """An instance that may take as long as is left until a deadline; ``None`` where nothing is left."""
+    """Return an instance limited to the time left until a deadline; ``None`` if none is left."""
     left = deadline - computed()
     if left <= 0.0:
         return None
@@ -149,7 +149,7 @@ def hurried(instance: Instance, deadline: float) -> Instance | None:
 
 
 def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list[Iteration]]:
-    """The limits that an instance sets, counted from now, and the history that is written by whoever tells them."""
+    """Return the limits of an instance, counted from now, and the history to which reports are appended."""
     history: list[Iteration] = []
 
     def watch(objective: float, residual: float) -> None:
@@ -163,13 +163,13 @@ def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list
 
 
 def history_of(passed: Sequence[tuple[float, float]]) -> tuple[Iteration, ...]:
-    """A history from cost and residual, one by one."""
+    """Return a history from pairs of cost and residual."""
     return tuple(Iteration(number, *one) for number, one in enumerate(passed))
 
 
 @dataclass(frozen=True)
 class Run(Generic[State]):
-    """How an iteration ended."""
+    """Result of an iteration."""
 
     state: State
     status: Status
@@ -178,7 +178,7 @@ class Run(Generic[State]):
 
 
 def iterate(method: Method[State], limits: Limits, progress: Progress | None) -> Run[State]:
-    """Step until the method terminates or a limit is reached."""
+    """Iterate until the method terminates or a limit is reached."""
     state = method.init()
     history = [method.measure(state, 0)]
     while True:
@@ -203,7 +203,7 @@ MESSAGE = "time limit reached while {steps} steps were computed"
 
 
 def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:
-    """No answer, and no trajectory."""
+    """Return a solution without an answer and without a trajectory."""
     n, m = len(instance.initial), len(instance.lower)
     return Solution(
         instance=instance,
@@ -223,7 +223,7 @@ def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:
 
 
 def unsimulated(instance: Instance, feedback: str) -> Simulation:
-    """No motion."""
+    """Return a simulation without a motion."""
     return Simulation(
         instance=instance,
         feedback=feedback,

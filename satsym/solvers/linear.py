@@ -1,8 +1,8 @@
-"""Linear problems in closed form: canonical equations that are linear in states and costates, with linear ends.
+"""Linear problems in closed form: canonical equations and end conditions that are linear in states and costates.
 
-With the state transition matrices of the Hamiltonian system all conditions together are one linear system (Bryson
-and Ho, Applied Optimal Control, 5.3). Those of an autonomous system are matrix exponentials; where time enters, they
-come from the variational equations. Several of them, one behind the other, keep growing modes from drowning others.
+With the state transition matrices of the Hamiltonian system, all conditions together are one linear system (Bryson and
+Ho, Applied Optimal Control, 5.3). For an autonomous system these are matrix exponentials; with explicit time they are
+integrated from the variational equations. Several successive arcs prevent growing modes from dominating others.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ from satsym.status import BadInput, Status
 from satsym.wording import counted
 
 PLACES = 8
-"""Times at which derivatives are compared, at two random places each."""
+"""Number of times at which derivatives are compared, at two random points each."""
 
 EQUAL_DERIVATIVES = 1e-9
-"""Relative difference of derivatives that may be rounding."""
+"""Relative difference of derivatives that counts as rounding."""
 
 TURN = 2.0
-"""What the fastest mode may do on one arc, in radians or powers of e."""
+"""Largest growth or rotation of the fastest mode on one arc, as an exponent or in rad."""
 
 MOST_ARCS = 2000
 GAUSS = 16
-"""Points at which the running cost is taken on each arc: what these leave out is below rounding."""
+"""Number of Gauss points of the running cost on each arc; the remaining error is below rounding."""
 
 ACCURACY = 1e-11
-"""Error of arcs that are integrated, with half of the steps that make the answer."""
+"""Error of integrated arcs, with half of the steps that are used for the answer."""
 
 CONTRADICTED = 1e-6
-"""Remaining violation, in scaled variables, of conditions that cannot all be met."""
+"""Remaining violation of the conditions, in scaled variables, above which they count as contradictory."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -54,12 +54,12 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        With a given final time, final states given, on the reference or free, and bounds that are not met.
+        Instance with a given final time, final states given, on the reference or free, and inactive bounds.
 
     Raises
     ------
     BadInput
-        If it is not linear, with the reason.
+        If the instance is not linear, with the reason.
     """
     return solved(instance, progress, "linear", _extremal)
 
@@ -69,24 +69,24 @@ class Exponential(Arcs):
     """Arcs of an autonomous linear system, by matrix exponentials."""
 
     def variations(self) -> tuple[Array, Array]:
-        """Ends of the arcs, and how they follow their beginnings."""
+        """Return the ends of the arcs, and their derivatives by the beginnings."""
         flows = self.flows(np.diff(self.mesh))
         ends = flows[:, :-1, :-1] @ self.nodes.T[:-1, :, None] + flows[:, :-1, -1:]
         return ends[:, :, 0].T, flows[:, :-1, :-1]
 
     def ends(self) -> Array:
-        """Ends of the arcs."""
+        """Return the ends of the arcs."""
         return self.variations()[0]
 
     def __call__(self, tau: Array) -> Array:
-        """States and costates at times in [0, 1]."""
+        """Return states and costates at times in [0, 1]."""
         arc = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
         flows = self.flows(tau - self.mesh[arc])
         values: Array = (flows[:, :-1, :-1] @ self.nodes.T[arc, :, None] + flows[:, :-1, -1:])[:, :, 0].T
         return values
 
     def cost(self) -> float:
-        """The cost of the motion, by Gauss quadrature."""
+        """Return the cost of the motion, by Gauss quadrature."""
         points, weights = np.polynomial.legendre.leggauss(GAUSS)
         widths = np.diff(self.mesh)[:, None]
         tau = (self.mesh[:-1, None] + widths * (points + 1.0) / 2.0).ravel()
@@ -96,7 +96,7 @@ class Exponential(Arcs):
 
     @cached_property
     def _generator(self) -> Array:
-        """Generator of the motion by tau, with what drives it as a last column, shape (2n + 1, 2n + 1)."""
+        """Generator of the motion with respect to tau, with the driving term as last column, shape (2n + 1, 2n + 1)."""
         here, tau = np.append(self.problem.initial, np.zeros(self.problem.states))[:, None], np.zeros(1)
         slopes = self.problem.jacobian(tau, here, self.theta)[:, :, 0]
         driven = self.problem.rates(tau, here, self.theta) - slopes @ here
@@ -105,7 +105,7 @@ class Exponential(Arcs):
         return found
 
     def flows(self, widths: Array) -> Array:
-        """State transition matrices over these shares of the duration, shape (M, 2n + 1, 2n + 1)."""
+        """Return state transition matrices over given fractions of the duration, shape (M, 2n + 1, 2n + 1)."""
         turned = self._generator * widths[:, None, None]
         return exponential(turned) if np.isfinite(turned).all() else np.full_like(turned, np.nan)
 
@@ -140,7 +140,7 @@ def _extremal(instance: Instance, limits: Limits) -> Extremal:
 
 
 def is_linear(problem: TwoPoint) -> bool:
-    """Whether derivatives are finite; an instance for which they differ between random places is refused."""
+    """Return whether derivatives are finite; refuse an instance whose derivatives vary between random points."""
     n, names, rng = problem.states, problem.instance.model.spec.state_names, np.random.default_rng(0)
     tau, places = np.linspace(0.0, 1.0, PLACES), rng.standard_normal((2, 2 * n, PLACES))
     places[:, list(problem.positive)] = np.abs(places[:, list(problem.positive)])
@@ -160,7 +160,7 @@ def is_linear(problem: TwoPoint) -> bool:
 
 
 def _arcs(problem: TwoPoint) -> Arcs:
-    """Arcs on which no mode of the motion does much, not solved yet."""
+    """Return arcs so short that no mode grows or rotates much on them, without a solution."""
     n, theta = problem.states, problem.theta
     tau = np.linspace(0.0, 1.0, PLACES)
     slopes = problem.jacobian(tau, np.ones((2 * n, PLACES)), theta).transpose(2, 0, 1)
@@ -174,7 +174,7 @@ def _arcs(problem: TwoPoint) -> Arcs:
 
 
 def _violation(arcs: Arcs) -> float:
-    """The largest violation of all conditions."""
+    """Return the largest violation of all conditions."""
     wrong = residual(arcs, arcs.ends())
     return float(max(np.abs(part).max() for part in (wrong.defects, wrong.start, wrong.finish)))
 

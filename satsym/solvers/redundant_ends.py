@@ -1,9 +1,9 @@
-"""A final state that follows from the others, because a quantity is conserved whatever the controls do.
+"""A final state that follows from the others, because the motion conserves a quantity for all controls.
 
-The components of a quaternion are an example: with three of them given at the end, and the sign, so is the fourth. Such
-a condition makes all equations for costates singular. It shows in what controls do to the final state: there is a
-direction in which they move it nowhere. The condition on the state that this direction has most of is left out, and
-looked at again in the answer.
+For example, three components of a quaternion at the end determine the fourth, up to its sign. Such a condition makes
+the equations for the costates singular. It is found from the effect of controls on the final state, which vanishes in
+one direction. The condition on the state with the largest component in this direction is left out, and tested again in
+the answer.
 """
 
 from __future__ import annotations
@@ -20,53 +20,57 @@ from satsym.kernels import Kernels
 from satsym.solution import Solution
 
 SPANNED, MOVED = 1e-9, 1e-9
-"""Share of the largest singular value below which rates at the end, and responses to controls, span a direction less.
-"""
+"""Singular values, relative to the largest, below which rates at the end, and responses to controls, do not span a
+direction."""
 
 DRAWN = 6
-"""Controls whose rates at the end are compared."""
+"""Number of random controls whose rates at the end are compared."""
 
 MORE, STEPS = 3, 16
-"""Knots at which controls are varied, more than it takes to move the end everywhere, and steps from one to the next."""
+"""Number of knots at which controls are varied, in addition to those needed to move the end in all directions, and
+number of steps between knots."""
 
 STEP = 1e-4
-"""By which they are varied, relative to their size."""
+"""Variation of the controls, relative to their magnitude."""
 
 SEEN = 1e-5
-"""By which they then move the end at least, relative to sizes: by more where that is less."""
+"""Minimum relative effect of this variation on the end. If the effect is smaller, the variation is increased."""
 
 OFF = (0.3, 0.7)
-"""By how much a final state that is free is off its start, relative to that."""
+"""Range of the random distance of a free final state from the initial one, relative to the latter."""
 
 EQUAL_DIRECTIONS = 1e-4
-"""Difference of the directions that two controls leave open, if it is one of the motion and none of these controls."""
+"""Largest difference between the directions without effect of two random controls, for a direction that belongs to the
+motion."""
 
 LARGE_ENOUGH = 0.1
-"""Share of the largest component of a direction, with which a state follows from the others well enough."""
+"""Component of a direction, relative to the largest, above which the state follows from the others accurately
+enough."""
 
 HORIZON = 0.25
-"""Share of the motion's own time scale in which controls are varied."""
+"""Time in which controls are varied, as a fraction of the time scale of the motion."""
 
 DRIFTING = 1e-3
-"""Share of the largest slope of the motion below which its eigenvalues are none."""
+"""Eigenvalues of the motion, relative to its largest derivative, below which they count as zero."""
 
 MET = 1e-6
-"""Miss of a final state that was left out, relative to its largest size on the way, with which it is met."""
+"""Miss of a final state that was left out, relative to its largest magnitude, up to which it counts as satisfied."""
 
 
 @dataclass(frozen=True)
 class Redundant:
-    """An instance without one of its final states, which follows from the others."""
+    """An instance without one of its given final states, which follows from the others."""
 
     instance: Instance
     state: str
     given: float
     others: tuple[Redundant, ...] = ()
-    """Instances without another final state, where the signs that the rest leaves open differ."""
+    """Alternatives with another final state left out, which may differ in signs that the remaining states leave
+    open."""
 
     @property
     def towards(self) -> Instance:
-        """The instance with the straight line to its end as a guess: the final states left may leave a sign open."""
+        """The instance with the straight line to its end as initial guess, as a sign of the end may be open."""
         names, whole = self.instance.model.spec.state_names, {**self.instance.final, self.state: self.given}
         line = {
             name: (x, float(whole[name]) if isinstance(whole.get(name), float | int) else x)
@@ -75,7 +79,7 @@ class Redundant:
         return replace(self.instance, guess=Guess(state=line))
 
     def met(self, solution: Solution) -> bool:
-        """Whether there is an answer, and it ends there all the same."""
+        """Return whether a solution has an answer that satisfies the condition that was left out."""
         size = float(np.abs(solution.x[self._row]).max())
         return solution.status.answered and abs(self.reached(solution) - self.given) <= MET * max(size, abs(self.given))
 
@@ -84,11 +88,11 @@ class Redundant:
         return self.instance.model.spec.state_names.index(self.state)
 
     def reached(self, solution: Solution) -> float:
-        """Where it ends."""
+        """Return the value with which the state ends in a solution."""
         return float(solution.x[self._row, -1])
 
     def missed(self, solution: Solution) -> str:
-        """What an answer that does not end there means."""
+        """Return the message for an answer that does not satisfy the condition that was left out."""
         return (
             f"a function of the states that no control changes ties the final {self.state} to the others: what was "
             f"found with these as asked ends at {self.reached(solution):.6g} instead of {self.given:.6g}; leave it out"
@@ -96,7 +100,7 @@ class Redundant:
 
     @property
     def note(self) -> str:
-        """What was done, in words."""
+        """Return a message that says which condition was left out, and why."""
         return (
             f"the other final states already determine the final {self.state}, because no control changes a "
             "certain function of them: this condition was left out"
@@ -104,7 +108,7 @@ class Redundant:
 
 
 def redundant(instance: Instance) -> Redundant | None:
-    """The instance without a final state that follows from the others; ``None`` where none does."""
+    """Return the instance without a final state that follows from the others; ``None`` if there is none."""
     names = instance.model.spec.state_names
     fixed = np.array([isinstance(instance.final.get(name), float | int) for name in names])
     if instance.guess or instance.model.spec.multipliers or fixed.sum() < 2:
@@ -126,19 +130,19 @@ def redundant(instance: Instance) -> Redundant | None:
 
 
 def _without(instance: Instance, state: str) -> Redundant:
-    """What is left where this one is not asked for."""
+    """Return the instance with one final state left out."""
     final = {name: value for name, value in instance.final.items() if name != state}
     return Redundant(replace(instance, final=final), state, float(instance.final[state]))
 
 
 @lru_cache
 def _shares(count: int) -> Array:
-    """By which states are off their start."""
+    """Return relative distances of free final states from the initial ones."""
     return np.random.default_rng(1).uniform(*OFF, count)
 
 
 def _end(instance: Instance, fixed: Array) -> Array:
-    """A final state as it is asked for, and with what is free somewhere off the start."""
+    """Return the required final states, with values away from the initial state for the free ones."""
     start, names = np.array(instance.initial), instance.model.spec.state_names
     off = curve = start + np.where(start != 0.0, np.abs(start), 1.0) * _shares(len(start))
     referred = [instance.final.get(name) == "reference" for name in names]
@@ -149,20 +153,20 @@ def _end(instance: Instance, fixed: Array) -> Array:
 
 
 def _sizes(instance: Instance, end: Array) -> Array:
-    """Sizes of states at both ends; one where both are zero."""
+    """Return magnitudes of the states at both ends; 1 if both are zero."""
     size = np.maximum(np.abs(end), np.abs(np.array(instance.initial)))
     return np.where(size > 0.0, size, 1.0)
 
 
 def _controls(instance: Instance, rng: np.random.Generator, count: int) -> Array:
-    """Admissible controls that are drawn, shape (m, count)."""
+    """Return random admissible controls, shape (m, count)."""
     return np.asarray(instance.control_set.project(rng.normal(size=(len(instance.model.spec.controls), count))))
 
 
 def _spans_less(instance: Instance, end: Array) -> bool:
-    """Whether rates of change at the end and how they change along each other span less than all directions.
+    """Return whether rates at the end and their commutators span less than all directions.
 
-    Where they do not, no quantity is conserved, and nothing else needs to be looked at.
+    Otherwise no quantity is conserved, and no further tests are needed.
     """
     place = _last(instance), instance.tf is None, tuple(end.tolist())
     rounded = np.exp2(np.rint(np.log2(_sizes(instance, end))))  # known again where only the start differs
@@ -171,7 +175,7 @@ def _spans_less(instance: Instance, end: Array) -> bool:
 
 @lru_cache(maxsize=32)
 def _dependent(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row, sizes: Row) -> bool:
-    """Whether rates and changes at the end leave out a direction, states being of these sizes."""
+    """Return whether rates and commutators at the end leave out a direction, relative to the states' magnitudes."""
     columns, made_of = _directions(model, p, within, t, free_time, end)
     size = np.array(sizes)[:, None]
     # what cancels but for rounding must not count: each column is relative to what it is made of
@@ -184,7 +188,7 @@ def _dependent(model: Kernels, p: Row, within: ControlSet, t: float, free_time: 
 
 @lru_cache(maxsize=8)
 def _directions(model: Kernels, p: Row, within: ControlSet, t: float, free_time: bool, end: Row) -> tuple[Array, Array]:
-    """Rates at the end under drawn controls and their commutators, a column each, and what they are made of."""
+    """Return rates at the end under random controls and their commutators as columns, and magnitudes of their terms."""
     drawn = np.random.default_rng(0).normal(size=(len(model.spec.controls), DRAWN))
     given = np.full(DRAWN, t), np.repeat(np.array(end)[:, None], DRAWN, axis=1), within.project(drawn), p
     rates, slopes = model.dynamics_batch(*given), model.jacobian_x_batch(*given)
@@ -197,14 +201,14 @@ def _directions(model: Kernels, p: Row, within: ControlSet, t: float, free_time:
 
 
 def _last(instance: Instance) -> float:
-    """The final time, or one that may be."""
+    """Return the final time, or a possible one."""
     if instance.tf is not None:
         return instance.tf
     return instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
 
 
 def _still(instance: Instance, end: Array, rng: np.random.Generator) -> Array | None:
-    """The direction in which controls do not move the end of a motion that ends as it should, if there is just one."""
+    """Return the direction in which controls do not move the end of the motion, if it is unique, otherwise ``None``."""
     model, p, size = instance.model, instance.parameters, _sizes(instance, end)
     knots = -(-len(end) // len(model.spec.controls)) + MORE
     drawn, count = _controls(instance, rng, knots), (knots - 1) * STEPS
@@ -246,7 +250,7 @@ def _still(instance: Instance, end: Array, rng: np.random.Generator) -> Array | 
 
 
 def _quickest(instance: Instance, end: Array, drawn: Array) -> float:
-    """The largest rate of the motion about the end: by its eigenvalues, or by its slopes where these give no scale."""
+    """Return the largest rate of the motion near the end, from its eigenvalues or, if these vanish, its derivatives."""
     last, n = _last(instance), len(end)
     found = []
     for u in drawn.T.tolist():

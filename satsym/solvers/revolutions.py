@@ -1,6 +1,6 @@
-"""Angles whose final value counts modulo a turn: which number of turns costs least.
+"""Angles whose final value counts modulo a turn: determination of the number of turns with minimum cost.
 
-A final angle a turn further is the same as an initial angle a turn less, the model being the same a turn away; so
+A final angle plus a turn is equivalent to an initial angle minus a turn, since the model is periodic in the angle; thus
 each number of turns is an ordinary instance. The numbers next to the best one are solved as well.
 """
 
@@ -23,22 +23,23 @@ from satsym.status import Status
 
 TURN = 2.0 * math.pi
 MOST_MOVES = 6
-"""Moves from one number of turns to a cheaper neighbour; after so many there may be no end to it."""
+"""Maximum number of changes to a cheaper neighbouring number of turns. If it is reached, the cost may fall without
+limit."""
 
 
 def with_cheapest_turns(
     solve: Callable[[Instance, Progress | None], Solution], instance: Instance, progress: Progress | None
 ) -> Solution:
-    """Solve with the number of turns that costs least.
+    """Solve an instance with the number of turns that has minimum cost.
 
     Parameters
     ----------
     solve
-        Solves an instance whose final angles are what they are.
+        Solver of an instance with fixed final angles.
     instance
-        Whose ``[solver] free_angles`` count modulo a turn.
+        Instance whose ``[solver] free_angles`` count modulo a turn.
     progress
-        Called after each iteration of each solution.
+        Function that is called after each iteration of each solution.
     """
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     if not angles:
@@ -78,7 +79,7 @@ def with_cheapest_turns(
 
 
 def _turned(solution: Solution, instance: Instance, turns: dict[str, int]) -> Solution:
-    """A solution of an instance with so many turns less, as one of the instance itself."""
+    """Return the solution of an instance with shifted initial angles as one of the original instance."""
     names = instance.model.spec.state_names
     return replace(
         solution, instance=instance, x=solution.x + TURN * np.array([turns.get(name, 0) for name in names])[:, None]
@@ -86,14 +87,14 @@ def _turned(solution: Solution, instance: Instance, turns: dict[str, int]) -> So
 
 
 def shifted(instance: Instance, turns: dict[str, int]) -> Instance:
-    """The instance whose initial angles are so many turns less."""
+    """Return the instance with its initial angles reduced by the given numbers of turns."""
     names = instance.model.spec.state_names
     initial = tuple(x - TURN * turns.get(name, 0) for name, x in zip(names, instance.initial, strict=True))
     return replace(instance, initial=initial)
 
 
 def as_stated(solution: Solution) -> Solution:
-    """A solution with as many turns taken off its angles, throughout, as make them end as stated."""
+    """Return a solution whose angles are reduced by the turns that make them end as stated."""
     instance, names = solution.instance, solution.instance.model.spec.state_names
     turns: dict[str, int] = {}
     for name in instance.solver.free_angles:
@@ -108,17 +109,17 @@ def as_stated(solution: Solution) -> Solution:
 
 
 def _goal(instance: Instance, row: int, wanted: float | str, tf: float) -> float:
-    """A stated final value."""
+    """Return a stated final value, from the reference if it is given by that."""
     return float(instance.model.reference(tf, instance.parameters)[row] if isinstance(wanted, str) else wanted)
 
 
 def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """One turn less or more of one angle."""
+    """Return the numbers of turns with one turn less or more of one angle."""
     return [(*at[:i], at[i] + step, *at[i + 1 :]) for i in range(len(at)) for step in (-1, 1)]
 
 
 def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
-    """The turns that the uncontrolled motion comes closest to; with a free final time, in a typical one."""
+    """Return the turns that the uncontrolled motion comes closest to; with a free final time, in a typical one."""
     none = tuple([0] * len(angles))
     if not angles:
         return none

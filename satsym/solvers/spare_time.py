@@ -1,4 +1,4 @@
-"""How long a motion may last that costs less than a known one, and how quickly motions beside that swing."""
+"""The longest duration of a motion that may cost less than a known one, and the frequency of nearby oscillations."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from satsym.arrays import Array
 from satsym.solution import Solution
 
 PLACES = 41
-"""At which modes are looked at."""
+"""Number of points at which modes are computed."""
 
 LONGER, SWINGS, FREELY = 12.0, 3.0, 4.0
-"""Shares of a duration, or periods, up to which longer ones are looked at that can be paid for: what time alone would
-cost is less than what was found. Where time need not cost anything, up to the last share."""
+"""Limits of the durations that are searched: multiples of the known duration and of the oscillation period, as far as
+the cost of time alone stays below the known cost; and a multiple of the known duration if time has no cost."""
 
 
 def longest(solution: Solution) -> float:
-    """The longest duration in which something is looked for that may cost less: that which is given, if one is."""
+    """Return the longest duration in which a cheaper motion is searched for; the given duration if there is one."""
     instance, lasting = solution.instance, float(solution.times[-1] - solution.times[0])
     if instance.tf is not None:
         return lasting
@@ -28,13 +28,13 @@ def longest(solution: Solution) -> float:
 
 
 def frequency(solution: Solution) -> float:
-    """The angular frequency of the quickest oscillation of linearised motions along a solution."""
+    """Return the angular frequency of the fastest oscillation of the linearised motion along a solution."""
     slopes = rates_by_states(solution, max(1, len(solution.times) // PLACES))
     return float(np.abs(np.linalg.eigvals(slopes.transpose(2, 0, 1)).imag).max())
 
 
 def rates_by_states(solution: Solution, step: int) -> Array:
-    """The derivatives of rates by states, shape (n, n, M), at every so many times."""
+    """Return derivatives of the rates by states, shape (n, n, M), at every ``step``-th time."""
     instance, n, times = solution.instance, len(solution.x), solution.times[::step]
     x, u = solution.x[:, ::step], solution.u[:, ::step]
     slopes = np.asarray(instance.model.jacobian_x_batch(times, x, u, instance.parameters))

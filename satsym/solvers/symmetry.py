@@ -1,9 +1,9 @@
-"""Rotations under which a motion without control looks the same, found from its rates.
+"""Rotations under which the uncontrolled motion is invariant, found from its rates.
 
-A linear map G generates such a rotation if G f(x) = f_x(x) G x for all states: then exp(phi G) maps motions into
-motions, and the angular momentum about its axis is conserved. These equations are linear in G, so a few states drawn
-at random show all of them, in whatever Cartesian coordinates the model is stated. Maps that a small perturbation, such
-as the oblateness of a planet, just keeps from being symmetries still tell how the motion goes round.
+A linear map G generates such a rotation if G f(x) = f_x(x) G x for all states: then exp(phi G) maps motions to motions,
+and the angular momentum about its axis is conserved. These equations are linear in G, so that a few random states
+determine all solutions, in any Cartesian coordinates of the model. Maps that are symmetries except for a small
+perturbation, such as the oblateness of a planet, still show how the motion revolves.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ from satsym.instance import Instance
 from satsym.kernels import Kernels
 
 DRAWN = 12
-"""States at which the equations are looked at, for each state variable."""
+"""Number of random states at which the equations are evaluated, for each state variable."""
 
 NONE = 1e-9
-"""Relative size of a difference of slopes that is none."""
+"""Relative difference of derivatives that counts as rounding."""
 
 PERTURBED = 1e-2
-"""Relative size of what a perturbation leaves of equations that a symmetry would meet: that of oblateness is 4e-4 to
+"""Relative residual of the symmetry equations that is attributed to a perturbation; that of oblateness is 4e-4 to
 1.1e-3."""
 
 ALIKE_AXES = 0.88
-"""Cosine of half a radian: rotations whose axes lie nearer to each other are one."""
+"""Cosine of half a radian: rotations with axes closer than this angle count as the same."""
 
 
 def symmetric(instance: Instance) -> bool:
-    """Whether the motion without control looks the same after rotations that follow it.
+    """Return whether the uncontrolled motion is invariant under rotations that follow it.
 
-    Looked at are the rotation that follows the motion best at all ends that are given, and those at either of them. In
-    space the first is about an axis between those of the momenta at start and end, whatever the coordinates. An end is
-    given where every state is that rotations move.
+    The rotation that follows the motion best at all given ends is tested, and those that do so at either end. In space
+    the first has an axis between those of the angular momenta at start and end, in any coordinates. The final state
+    counts as given if all states are that rotations change.
     """
     model, (end, given) = instance.model, _end(instance)
     ends = np.array([instance.initial, end]).T
@@ -67,7 +67,7 @@ def symmetric(instance: Instance) -> bool:
 
 
 def _comes_back(matrix: Array) -> bool:
-    """Whether a matrix generates a rotation, which comes back to where it began."""
+    """Return whether a matrix generates a rotation, which is periodic."""
     angular, axes = np.linalg.eig(matrix)
     fastest = float(np.abs(angular).max())
     turning = fastest > 0.0 and not (np.abs(angular.real) > PERTURBED * fastest).any()
@@ -75,21 +75,21 @@ def _comes_back(matrix: Array) -> bool:
 
 
 def _vectors(found: Array) -> NDArray[np.bool_]:
-    """Which states maps (k, n, n) of states over their sizes mix, directly or by others, shape (n, n)."""
+    """Return which states are mixed by maps (k, n, n) of scaled states, directly or through others, shape (n, n)."""
     mixed = np.abs(found).max(axis=0) > PERTURBED * np.abs(found).max()
     steps = (mixed | mixed.T | np.eye(len(mixed), dtype=bool)).astype(float)
     return np.asarray(np.linalg.matrix_power(steps, len(steps)) > 0.0)
 
 
 def _moved(vectors: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which states are mixed with others, shape (n,)."""
+    """Return which states are mixed with others, shape (n,)."""
     return np.asarray(vectors.sum(axis=1) > 1)
 
 
 def _end(instance: Instance) -> tuple[Array, NDArray[np.bool_]]:
-    """The final state, shape (n,), and what of it is given; elsewhere it is the initial one.
+    """Return the final state, shape (n,), and which of it is given; for the others it is the initial state.
 
-    Nothing is given on a reference that moves while the final time is free.
+    On a moving reference no final state counts as given if the final time is free.
     """
     final, names, end = instance.final, instance.model.spec.state_names, np.array(instance.initial, dtype=float)
     on_curve = "reference" in final.values()
@@ -103,7 +103,7 @@ def _end(instance: Instance) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _sizes(model: Kernels, ends: Array) -> Array:
-    """How large states are at these ends (n, k), alike for those of one unit, which may be components of a vector."""
+    """Return the magnitudes of the states at given ends (n, k), equal for states of one unit, as in a vector."""
     sizes = np.sqrt((_of_one_unit(model) @ (ends * ends)).max(axis=1))
     moving = sizes > 0.0  # what is zero at all ends is taken for as large as the rest
     return np.where(moving, sizes, sizes[moving].mean() if moving.any() else 1.0)
@@ -111,13 +111,13 @@ def _sizes(model: Kernels, ends: Array) -> Array:
 
 @lru_cache(maxsize=32)
 def _of_one_unit(model: Kernels) -> Array:
-    """Which states have the same unit, shape (n, n): one where two have, zero elsewhere."""
+    """Return which states have the same unit, shape (n, n), as ones and zeros."""
     units = np.array([state.unit for state in model.spec.states])
     return (units[:, None] == units).astype(float)
 
 
 def _about(model: Kernels, start: Array, size: Array) -> Row:
-    """A place near a state that it shares with others: these maps are the same everywhere."""
+    """Return a rounded point near a state, so that results are shared between similar states."""
     near = np.where(start > 0.0, np.ldexp(1.0, np.rint(np.log2(np.abs(start) + 1e-300)).astype(int)), start)
     positive = np.array([state.positive for state in model.spec.states])
     return tuple(np.where(positive, near, size / 4.0 * np.rint(4.0 * start / size)).tolist())
@@ -125,7 +125,7 @@ def _about(model: Kernels, start: Array, size: Array) -> Row:
 
 @lru_cache(maxsize=32)
 def _generators(model: Kernels, t0: float, about: Row, sizes: Row, parameters: Row) -> Array | None:
-    """All maps G of a motion that is not linear, shape (k, n, n), found near a state; ``None`` for none."""
+    """Return all maps G of a nonlinear motion, (k, n, n), from states near a given one; ``None`` if none exist."""
     n, size = len(about), np.array(sizes)
     x = np.array(about)[:, None] + size[:, None] * np.random.default_rng(0).uniform(-0.5, 0.5, (n, DRAWN * n))
     rates, slopes = _motion(model, t0, parameters, x)
@@ -148,7 +148,7 @@ def _generators(model: Kernels, t0: float, about: Row, sizes: Row, parameters: R
 
 
 def _motion(model: Kernels, t0: float, parameters: Row, x: Array) -> tuple[Array, Array]:
-    """Rates of the free motion and their derivatives at states (n, M)."""
+    """Return rates of the uncontrolled motion and their derivatives at states (n, M)."""
     none = np.zeros((len(model.spec.controls), x.shape[1]))
     t = np.full(x.shape[1], t0)
     with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""Given ends: collocation from a line or a guess, refined until the error estimate is small enough, within bounds."""
+"""Problems with given ends: collocation from a straight line or an initial guess, refined to the required accuracy."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
 ROUNDING = 1e-12
-"""An estimated error below this can hardly be made smaller."""
+"""Error estimate below which rounding prevents a further reduction."""
 
 STRAIGHT_THROUGH = 15
-"""Steps within which the straight line leads to a minimum if it does so easily."""
+"""Maximum number of steps from the straight line to a minimum; with more steps other starts are better."""
 
 ROUGHLY, TOLERANCE = 3e-2, 1e-7
-"""Sizes of the last step: after the first the mesh is laid anew if the way was hard, the other ends the minimisation.
-"""
+"""Sizes of the last step of the two stages of the minimisation: after the first stage a new mesh is used if the
+iteration was irregular; the second stage ends it."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
-"""From an extremal of low order without bounds to an accurate one within them."""
+"""Function from an extremal of low order without bounds to an accurate one with bounds."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -53,14 +53,14 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        With final states given, on the reference or free, and a final time that is given or free.
+        Instance with final states given, on the reference or free, and a given or free final time.
     progress
-        Called after each step of the minimisation, and each phase.
+        Function that is called after each step of the minimisation, and each phase.
 
     Returns
     -------
     Solution
-        With status ``converged`` when the estimated error is within the instance's tolerance.
+        Solution with the status ``converged`` if the estimated error is within the instance's tolerance.
     """
 
     def method(one: Instance, limits: Limits) -> Extremal:
@@ -70,14 +70,15 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> Extremal:
-    """Find an extremal of low order, from a guess or without bounds from a straight line, and make it accurate.
+    """Find an extremal of low order, from a guess or a straight line, and make it accurate.
 
-    Controls of which vanishing costates say nothing need a guess of all states and costates.
+    From a straight line bounds are ignored at first. Controls that vanishing costates do not determine need an initial
+    guess of all states and costates.
 
     Parameters
     ----------
     limits
-        When to stop, and the observer of the cost of what was found.
+        Limits of the computation, and the observer of costs.
     """
     spec, led = instance.model.spec, from_guess(instance, limits)
     if led is None and (spec.stationary or spec.directional):
@@ -103,14 +104,14 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:
-    """No extremal, and why: for want of time where that is up."""
+    """Return no extremal, and why; the status is the time limit if that is reached."""
     if limits.expired:
         return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time limit reached: {message}", steps)
     return Extremal(problem, path, float("inf"), Status.NOT_CONVERGED, message, steps)
 
 
 def under_guess(problem: TwoPoint, limits: Limits) -> Start | None:
-    """The extremal within the bounds to which sweeps lead from a control that is guessed, if one is and they can."""
+    """Return the extremal with bounds to which sweeps lead from an initial guess of the control, otherwise ``None``."""
     control = problem.instance.guess.control
     if not control or not problem.control_set.bounded or not loose(problem):
         return None
@@ -122,22 +123,22 @@ def under_guess(problem: TwoPoint, limits: Limits) -> Start | None:
 
 
 def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Attempt:
-    """The extremal within the bounds, from one without: the bounds are brought in from where they do not bind.
+    """Return the extremal with bounds from one without, by tightening bounds that are inactive at first.
 
     Parameters
     ----------
     problem
-        With its bounds.
+        Problem with its bounds.
     start
         How the extremal was found.
     free
-        The extremal, perhaps more accurate.
+        The extremal without bounds, possibly refined.
     """
     return replace(start.found, iterations=1) if start.bounded else tighten(problem, free, STAGES, limits)
 
 
 def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-    """Make an extremal of low order an accurate one within the bounds."""
+    """Make an extremal of low order accurate, with the bounds of the control."""
     tolerance = problem.instance.solver.tolerance
     free, steps = problem.relaxed(float("inf")), start.steps
     refined = start.found
@@ -163,16 +164,16 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
 
 
 def cold_start(problem: TwoPoint, limits: Limits) -> Start:
-    """Find a minimum of a problem without bounds, or an extremal that is none.
+    """Find a minimum of a problem without bounds, or an extremal that is no minimum.
 
-    Newton's method begins from a straight line in the state space: that between the ends or, where nothing is asked of
-    the end, the uncontrolled motion; or else from what is guessed. Where it fails, a minimisation follows. What this
-    does not solve is left to the direct search.
+    Newton's method begins from a straight line in the state space between the ends, from the uncontrolled motion if
+    nothing is required of the end, or from an initial guess. If it fails, a minimisation follows. Problems that this
+    does not solve are left to the direct search.
 
     Parameters
     ----------
     problem
-        Bounds are ignored.
+        Problem whose bounds are ignored.
 
     Raises
     ------
@@ -196,12 +197,12 @@ def cold_start(problem: TwoPoint, limits: Limits) -> Start:
 
 
 def _minimum(problem: TwoPoint, line: Curve, limits: Limits) -> Attempt:
-    """The minimum to which the straight line leads as a first guess, or why it leads to none."""
+    """Return the minimum to which the straight line leads as an initial guess, or why it leads to none."""
     return straight_through(problem, line, limits) or from_path(problem, paths.first(problem), limits, STRAIGHT_THROUGH)
 
 
 def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
-    """What Newton's method finds from a curve, whether a minimum or not."""
+    """Return the extremal that Newton's method finds from a curve, which need not be a minimum; otherwise ``None``."""
     system = System(problem, start.mesh, STAGES)
     outcome = newton(system, start, most=STRAIGHT_THROUGH)
     if outcome is None or not outcome.solved or not outcome.curve.in_domain(problem.positive):
@@ -210,14 +211,14 @@ def _extremal(problem: TwoPoint, start: Curve) -> Attempt | None:
 
 
 def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int) -> Attempt:
-    """Minimise from a path of states; the mesh is laid anew as the curve takes shape.
+    """Minimise from a path of states, with new meshes as the curve takes shape.
 
     Parameters
     ----------
     path
-        Shape (n, M) for M times.
+        Function from M times to states, shape (n, M).
     most
-        Steps of the minimisation.
+        Maximum number of steps of the minimisation.
     """
     curve = paths.curve(problem, path)
     steps, hard, tolerance = 0, False, ROUGHLY
