@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["simulate", "solve"]
 
 QUICK = 150_000
-"""Maximum number of columns that may be linearised before a direct search is tried."""
+"""Maximum number of points at which equations may be linearised before a direct search is tried."""
 
 Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 
@@ -206,7 +206,7 @@ def _refuted(solution: Solution) -> bool:
 
 
 def _nearly(solution: Solution) -> bool:
-    """Return whether a solution without an answer has an extremal that is only not accurate enough."""
+    """Return whether a solver found an extremal that is not accurate enough to be an answer."""
     return solution.status is Status.NOT_CONVERGED and not any(
         math.isnan(value) for value in solution.x[:, -1].tolist()
     )

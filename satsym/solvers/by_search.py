@@ -27,13 +27,13 @@ from satsym.status import Status, Verdict
 Solver = Callable[[Instance, Progress | None], Solution]
 
 RELAXED = 20_000
-"""Maximum number of columns that may be linearised for the extremal without path constraints."""
+"""Maximum number of points at which equations may be linearised for the extremal without path constraints."""
 
 COMPARED = 2_000_000
 """Maximum work of a search for a cheaper answer, in unknowns times iterations."""
 
 LITTLE = 200_000
-"""Limit of columns to linearise below which a problem with a free final time is not passed to the search."""
+"""Work limit of an instance, in linearised points, below which a free final time is not left to the search."""
 
 CHEAPER = 1e-6
 """Relative difference of costs above which a cheaper solution is taken."""

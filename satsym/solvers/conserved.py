@@ -124,7 +124,7 @@ def _rates(instance: Instance, x: Array, rng: np.random.Generator) -> Array:
 
 
 def _reduced(rows: Array) -> Array:
-    """Return a basis of the space of rows in which each row has a monomial that the others lack."""
+    """Return a basis of the given rows' span in which each row has a monomial that the others lack."""
     found = rows.copy()
     for k in range(len(found)):
         place = int(np.abs(found[k]).argmax())

@@ -101,7 +101,7 @@ def at(instance: Instance, share: float) -> Instance:
 
 
 def _stepped(instance: Instance, reached: _Reached, progress: Progress | None, quick: Solver) -> _Reached:
-    """Continue in steps as long as successive solutions are close to each other, and return the progress."""
+    """Continue in steps while successive solutions are close to each other, and return the progress made."""
     step = FIRST
     for _ in range(MOST_STEPS):
         if reached.share >= 1.0 or step < SHORTEST:

@@ -65,7 +65,7 @@ class Known:
     longest: float
     """Longest duration of other motions, equal to its own if that is given."""
     free: bool = False
-    """Whether other motions may have any duration up to the longest."""
+    """Whether other motions may have any duration up to the longest one."""
 
     @property
     def size(self) -> float:
@@ -84,12 +84,12 @@ class Beside:
 
     @property
     def states(self) -> Array:
-        """Return the scaled states at these times, shape (n, M)."""
+        """Return the scaled states at evenly spaced times, shape (n, M)."""
         return self.z[: len(self.z) // 2]
 
 
 def about(solution: Solution, problem: TwoPoint, seed: int) -> list[Beside]:
-    """Return motions near a solution as :func:`beside` does, in its problem at its duration."""
+    """Return motions near a solution that may cost less, as :func:`beside` does."""
     even = np.linspace(solution.times[0], solution.times[-1], SAMPLES)
     z = [np.interp(even, solution.times, row) for row in (*solution.x, *solution.lam)] / problem.scale.both
     n, free = problem.states, solution.instance.tf is None
@@ -249,7 +249,7 @@ class _Field:
         return np.concatenate(found)
 
     def _points(self, side: Bundle, nodes: NDArray[np.int64]) -> _Points:
-        """Return the states of extremals from one end at given nodes."""
+        """Return the states through which the extremals from one end pass at given nodes."""
         n, costs = self.problem.states, side.costs[nodes]
         at, which = np.nonzero(np.isfinite(costs) & (costs < self.known.cost))
         states = side.z[nodes[at], :n, which].T / self.unit[:, None]

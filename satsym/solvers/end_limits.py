@@ -28,11 +28,11 @@ CHANGES = 20
 """Maximum number of successive choices of active limits."""
 
 WORK, STARTS = 2_500_000, 3
-"""Maximum number of columns that may be linearised for one choice of limits, since a wrong choice may have no solution;
-and maximum number of starts for the motion from which limits are read."""
+"""Maximum number of points at which equations may be linearised for one choice of limits, since a wrong choice may have
+no solution. Maximum number of starts for the motion from which limits are read."""
 
 ROUNDS = 3
-"""Maximum number of certified answers that require other limits."""
+"""Maximum number of answers whose certificate requires other active limits."""
 
 Met = Mapping[str, Side]
 Solver = Callable[[Instance, Progress | None], Solution]

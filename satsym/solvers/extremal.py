@@ -115,7 +115,10 @@ def _solution(
 
 
 def _own(met: list[Array], control: int, within: ControlSet) -> list[Array]:
-    """Return the times at which the bounds of one control are met, from those of all; a norm bounds all controls."""
+    """Return the times at which the bounds of one control are met, from the times for all bounds.
+
+    The bound of a norm is a bound of all controls of the vector.
+    """
     if within.parts:
         return [row for row, places in zip(met, within.limited, strict=False) if control in places]
     return met[control :: len(within.lower)] if within.kind == "box" else met

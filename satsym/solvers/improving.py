@@ -46,10 +46,10 @@ PROPORTIONAL = 1.9
 """Minimum ratio of successive decreases of the cost that counts as proportional."""
 
 KEPT = 1e-6
-"""Largest miss of the end, relative to the effect that the change could have had."""
+"""Largest deviation of the final state, relative to the effect of the control change on it, that counts as none."""
 
 DEPARTED = (0.5, -0.5, 0.1, -0.1)
-"""Fractions of this change by which a motion departs from a saddle point."""
+"""Fractions of the control change by which a motion departs from a saddle point."""
 
 PIECES = 50
 """Maximum number of pieces of the motion on which the change of the control is constant."""
@@ -218,7 +218,7 @@ def _departures(solution: Solution) -> list[Guess]:
 
 
 def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
-    """Return the control of an extremal on a grid and the change with the most negative second variation."""
+    """Return the control of an extremal on a grid, and a change of negative second variation, or ``None``."""
     simulations = simulations_of(solution)
     if solution.instance.tf is None or simulations is None:
         return None

@@ -37,12 +37,12 @@ class Method(Protocol[State]):
         """Return why to stop, or ``None`` to continue."""
 
     def measure(self, state: State, number: int) -> Iteration:
-        """Return the line of a state in the history."""
+        """Return the history entry of a state."""
 
 
 @dataclass
 class Meter:
-    """Amount of work done, in columns (points of a mesh, steps of an integration) at which a motion was linearised."""
+    """Amount of work done, as the number of points (of a mesh or an integration) at which a motion was linearised."""
 
     spent: int = 0
 
@@ -96,7 +96,7 @@ class Limits:
     watch: Callable[[float, float], None] | None = None
     """Function that is told cost and residual after inner steps, for a solver whose phases take long."""
     work: float = float("inf")
-    """Maximum number of columns that may be linearised, see :class:`Meter`."""
+    """Maximum number of points at which equations may be linearised, see :class:`Meter`."""
     meter: Meter = field(default_factory=Meter)
     """Meter of the work done, shared by all limits that are derived from these."""
 

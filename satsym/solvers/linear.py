@@ -160,7 +160,7 @@ def is_linear(problem: TwoPoint) -> bool:
 
 
 def _arcs(problem: TwoPoint) -> Arcs:
-    """Return arcs so short that no mode grows or rotates much on them, without a solution."""
+    """Return arcs so short that no mode grows or rotates much on an arc, with preliminary values."""
     n, theta = problem.states, problem.theta
     tau = np.linspace(0.0, 1.0, PLACES)
     slopes = problem.jacobian(tau, np.ones((2 * n, PLACES)), theta).transpose(2, 0, 1)
@@ -174,7 +174,7 @@ def _arcs(problem: TwoPoint) -> Arcs:
 
 
 def _violation(arcs: Arcs) -> float:
-    """Return the largest violation of all conditions."""
+    """Return the largest violation of continuity, initial and final conditions."""
     wrong = residual(arcs, arcs.ends())
     return float(max(np.abs(part).max() for part in (wrong.defects, wrong.start, wrong.finish)))
 

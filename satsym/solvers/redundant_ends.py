@@ -34,7 +34,8 @@ STEP = 1e-4
 """Variation of the controls, relative to their magnitude."""
 
 SEEN = 1e-5
-"""Minimum relative effect of this variation on the end. If the effect is smaller, the variation is increased."""
+"""Minimum effect of a control variation on the end, relative to the states. If the effect is smaller, the variation is
+increased."""
 
 OFF = (0.3, 0.7)
 """Range of the random distance of a free final state from the initial one, relative to the latter."""
@@ -137,7 +138,7 @@ def _without(instance: Instance, state: str) -> Redundant:
 
 @lru_cache
 def _shares(count: int) -> Array:
-    """Return relative distances of free final states from the initial ones."""
+    """Return random relative distances of free final states from the initial ones."""
     return np.random.default_rng(1).uniform(*OFF, count)
 
 

@@ -109,12 +109,12 @@ def as_stated(solution: Solution) -> Solution:
 
 
 def _goal(instance: Instance, row: int, wanted: float | str, tf: float) -> float:
-    """Return a stated final value, from the reference if it is given by that."""
+    """Return the stated final value of an angle, from the reference if it is given by that."""
     return float(instance.model.reference(tf, instance.parameters)[row] if isinstance(wanted, str) else wanted)
 
 
 def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Return the numbers of turns with one turn less or more of one angle."""
+    """Return all numbers of turns that have one turn less or more of a single angle."""
     return [(*at[:i], at[i] + step, *at[i + 1 :]) for i in range(len(at)) for step in (-1, 1)]
 
 

@@ -67,7 +67,7 @@ def symmetric(instance: Instance) -> bool:
 
 
 def _comes_back(matrix: Array) -> bool:
-    """Return whether a matrix generates a rotation, which is periodic."""
+    """Return whether a matrix generates a rotation, that is, a periodic motion."""
     angular, axes = np.linalg.eig(matrix)
     fastest = float(np.abs(angular).max())
     turning = fastest > 0.0 and not (np.abs(angular.real) > PERTURBED * fastest).any()
@@ -82,7 +82,7 @@ def _vectors(found: Array) -> NDArray[np.bool_]:
 
 
 def _moved(vectors: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which states are mixed with others, shape (n,)."""
+    """Return which states are mixed with other states by the rotations, shape (n,)."""
     return np.asarray(vectors.sum(axis=1) > 1)
 
 

@@ -44,7 +44,7 @@ ROUGHLY, TOLERANCE = 3e-2, 1e-7
 iteration was irregular; the second stage ends it."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
-"""Function from an extremal of low order without bounds to an accurate one with bounds."""
+"""Function from an extremal of low order without control bounds to an accurate one with bounds."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:

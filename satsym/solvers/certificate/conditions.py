@@ -161,16 +161,16 @@ def first_order(
 
     Parameters
     ----------
-    Name of the check that compares the solution with the flow.
-        What the distance of the solution from the flow is called.
-    Violation of the minimum condition by the controls, ``None`` if it is their difference from the control law.
-        By how much controls violate the minimum of H, if that is not their difference from the law.
-    Controls along the flow, ``None`` if the control law determines them.
-        The controls along the flow, if the law alone does not give them.
-    Whether to check that H is constant in a model without explicit time.
-        Whether H is constant in a model without explicit time.
-    Excess of H at the final time, see :func:`boundary_residual`.
-        As :func:`boundary_residual` has it.
+    defect
+        Name of the check that compares the solution with the flow.
+    off_law
+        Violation of the minimum condition by the controls, ``None`` if it is their difference from the control law.
+    u
+        Controls along the flow, ``None`` if the control law determines them.
+    constant
+        Whether to check that H is constant in a model without explicit time.
+    more
+        Excess of H at the final time, see :func:`boundary_residual`.
     """
     checks = [
         Check(BOUNDARY, boundary_residual(solution, flow, more), RESIDUAL),

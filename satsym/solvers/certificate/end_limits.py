@@ -29,7 +29,7 @@ both relative to the costates."""
 
 
 def pushes(solution: Solution) -> dict[str, float]:
-    """Return multipliers of the active limits relative to the costates; positive if a limit keeps the end back."""
+    """Return multipliers of the active limits relative to the costates; positive if a limit restrains the end."""
     instance, spec = solution.instance, solution.instance.model.spec
     if not instance.met:
         return {}

@@ -72,7 +72,7 @@ class Phases:
 
 
 def followed(transition: Array, jumped: Collection[int] = ()) -> Phases | None:
-    """Return the phases at all stations.
+    """Return the phases at all stations, the times between which transition matrices are given.
 
     Parameters
     ----------
@@ -167,10 +167,10 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
 
     Parameters
     ----------
-    Times of the stations, shape (K,).
-        Of the stations, shape (K,).
-    Function that returns transition matrices from a station to given times before the next one, shape (M, 2n, 2n).
-        Transitions from a station to given times until the next, shape (M, 2n, 2n).
+    times
+        Times of the stations, shape (K,).
+    between
+        Function that returns transition matrices from a station to given times before the next one, shape (M, 2n, 2n).
     """
     after = np.flatnonzero(phases.passed > 0)
     if not len(after):
@@ -280,7 +280,7 @@ class Conjugate:
 
     @property
     def checks(self) -> list[Check]:
-        """Return checks of Jacobi's condition, each of a deficit that must not be positive."""
+        """Return checks of Jacobi's condition, each with a value that is positive if it fails."""
         if not self.resolved:
             return [Check("conjugate points not resolved", 1.0, 0.0)]
         found = [Check("conjugate points: none", float(self.passed), 0.0)]

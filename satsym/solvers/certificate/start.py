@@ -1,4 +1,4 @@
-"""Transversality at a free initial time: derivatives of the minimum cost with respect to free initial quantities.
+"""Transversality at a free start: derivatives of the minimum cost by free initial values and parameters.
 
 The minimum cost V as a function of given initial values and parameters has as its derivative the initial costate for an
 initial state, -H for the initial time, and the integral of H_p plus the contribution of the end for a parameter (Bryson
@@ -135,7 +135,7 @@ class Curvature:
 
     @property
     def checks(self) -> list[Check]:
-        """Return checks of the second-order condition at the start, each of a deficit that must not be positive."""
+        """Return checks of the second-order condition at the start, each with a value that is positive if it fails."""
         if not np.isfinite(self.smallest):
             return [Check("second-order condition at the free initial point not resolved", 1.0, 0.0)]
         found = [Check("second-order condition at the free initial point", float(not self.smallest > -FLAT), 0.0)]

@@ -158,7 +158,7 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
 
 
 def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[Check]:
-    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each with a value that is positive if it fails."""
     return [
         Check("legendre-clebsch", float(not legendre > 0.0), 0.0),
         *_jump_checks(solution),
@@ -169,7 +169,7 @@ def _sufficient(solution: Solution, legendre: float, field: Conjugate) -> list[C
 def _jump_checks(solution: Solution) -> list[Check]:
     """Return checks of the conditions at jumps of the control under which the second variation is known.
 
-    Each check is a deficit that must not be positive.
+    The value of each check is positive if the check fails.
     """
     every, tied = passages(solution), _ties(solution)
     unknown, unit = sum(not one.located for one in every), unit_sizes(solution)

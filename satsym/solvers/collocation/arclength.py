@@ -27,8 +27,8 @@ Problems = Callable[[float], TwoPoint]
 itself."""
 
 FIRST, SHORTEST = 0.02, 1e-5
-"""First and smallest length of a step; a step along the path parameter alone has the length of its fraction. Below the
-smallest length the path is given up."""
+"""First length of a step, and the length below which the path is given up. A step that changes the path fraction only
+has the length of this change."""
 
 CORRECTIONS, TRUSTED, SMALLEST_CORRECTION = 7, 0.3, 1e-4
 """Maximum number of Newton corrections of a step, largest size of a correction, and size below which corrections
@@ -38,7 +38,7 @@ FEW_CORRECTIONS, MANY_CORRECTIONS = 3, 5
 """Number of corrections up to which the next step is longer, and from which it is shorter."""
 
 AHEAD = 1e-4
-"""Difference of fractions by which the derivative of the residual is computed."""
+"""Difference of path fractions in the finite difference of the residual."""
 
 GROWN = 0.1
 """Relative change of the required number of intervals above which a new mesh is used."""
@@ -46,7 +46,7 @@ GROWN = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """A change of a curve and of the fraction of the path."""
+    """A change of a curve and of the fraction of the path at which it is a solution."""
 
     step: Step
     fraction: float
@@ -84,7 +84,7 @@ class Point:
     """A curve at a fraction of the path: an extremal there, or an approximation of one."""
 
     at: Problems
-    """The path."""
+    """Function from a fraction of the path to the problem there."""
     fraction: float
     curve: Curve
     """Fraction of the path, and the curve there."""
@@ -133,7 +133,7 @@ class Point:
         return self.linearised.step(slope)
 
     def product(self, a: Direction, b: Direction) -> float:
-        """Return the inner product of two directions: of their fractions plus the nodal mean of scaled changes."""
+        """Return the inner product of two directions: of their path fractions plus the nodal mean of scaled changes."""
         n = self.problem.states
         largest = np.abs(self.curve.nodes).reshape(2, -1).max(axis=1)
         sizes = np.repeat(np.maximum(largest, (1.0, SMALL_COSTATE)), n)[:, None]
@@ -146,7 +146,7 @@ class Point:
         return along.times((-1.0 if back else 1.0) / self.product(along, along) ** 0.5)
 
     def moved(self, direction: Direction, fraction: float | None = None) -> Point:
-        """Return the point after a change."""
+        """Return the point that a change of curve and path fraction leads to."""
         there = self.fraction + direction.fraction if fraction is None else fraction
         return Point(self.at, there, self.curve.moved(direction.step, 1.0))
 

@@ -92,7 +92,7 @@ def corners(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> Arra
 
 
 def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> list[Array]:
-    """Return these times for each bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
+    """Return the times at which the control law meets each bound, in the order of ``ControlSet.excess``."""
     if not problem.control_set.bounded:
         return []
 
@@ -141,7 +141,7 @@ def _unbounded(problem: TwoPoint, curve: Path, tau: Array) -> Array:
 
 
 def _sampled(mesh: Array, excess: Callable[[Array], Array]) -> tuple[Array, Array]:
-    """Return times in every interval, including those of brief violations between them, and the excess there.
+    """Return times in every interval, including those of brief bound violations between them, and the excess there.
 
     Parameters
     ----------

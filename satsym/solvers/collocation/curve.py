@@ -20,32 +20,32 @@ class Path(Protocol):
 
     @property
     def mesh(self) -> Array:
-        """Nodes in [0, 1], shape (N+1,)."""
+        """Nodes of the mesh in [0, 1], shape (N+1,)."""
 
     @property
     def nodes(self) -> Array:
-        """Values at the nodes, shape (2n, N+1)."""
+        """Values of states and costates at the nodes, shape (2n, N+1)."""
 
     @property
     def theta(self) -> Array:
-        """Extra unknowns, shape (e,)."""
+        """Extra unknowns, such as multipliers and a free duration, shape (e,)."""
 
     def __call__(self, tau: Array) -> Array:
-        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+        """Return states and costates at the times ``tau`` in [0, 1], shape (2n, M)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values at the nodes of a mesh and at the Gauss points between them."""
+    """Values of states and costates at the nodes of a mesh and at the Gauss points between them."""
 
     mesh: Array
-    """Nodes in [0, 1], shape (N+1,)."""
+    """Nodes of the mesh in [0, 1], shape (N+1,)."""
     nodes: Array
-    """Values at the nodes, shape (2n, N+1)."""
+    """Values of states and costates at the nodes, shape (2n, N+1)."""
     stages: Array
-    """Values at the s Gauss points of each interval, shape (2n, N, s)."""
+    """Values of states and costates at the s Gauss points of each interval, shape (2n, N, s)."""
     theta: Array
-    """Extra unknowns, shape (e,)."""
+    """Extra unknowns, such as multipliers and a free duration, shape (e,)."""
 
     @property
     def order(self) -> int:
@@ -58,7 +58,7 @@ class Curve:
         return self.stages.reshape(len(self.stages), -1)
 
     def __call__(self, tau: Array) -> Array:
-        """Return the values at ``tau`` in [0, 1], shape (2n, M)."""
+        """Return states and costates at the times ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         mesh = self.mesh
         interval = np.searchsorted(mesh[1:-1], tau, side="right")

@@ -41,7 +41,7 @@ def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> in
 
 
 def _counted(problem: TwoPoint, path: Path, matching: Matching, transition: Array) -> int:
-    """Return this number if the states are controllable in all directions."""
+    """Return the number of negative eigenvalues of the second variation, for states controllable in all directions."""
     n = problem.states
     # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
     slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])

@@ -107,7 +107,7 @@ def minimise(system: System, start: Curve, limits: Limits, tolerance: float, mos
 
 @dataclass(frozen=True, eq=False)
 class _Merit:
-    """A curve from which a step is taken, and the exact penalty function that measures the step."""
+    """A curve from which a step is taken, with the exact penalty function that decides whether the step is accepted."""
 
     system: System
     curve: Curve

@@ -20,9 +20,9 @@ class Residual:
     """Residuals of the collocation equations of a curve."""
 
     stages: Array
-    """Z - z_i - h A F(Z), shape (2n, N, s)."""
+    """Residuals of the stages, Z - z_i - h A F(Z), shape (2n, N, s)."""
     ends: Array
-    """z_{i+1} minus the end of the interval's polynomial, shape (2n, N)."""
+    """Residuals of continuity, z_{i+1} minus the end of the interval's polynomial, shape (2n, N)."""
     start: Array
     finish: Array
     """Residuals of the initial and final conditions, shapes (n,) and (n + e,)."""

@@ -73,7 +73,10 @@ def multipliers(instance: Instance, active: Active, t: Array, z: Array) -> Array
 
 
 def vanishing(instance: Instance, active: Active, constraint: int, t: Array, z: Array) -> Array:
-    """Return the further quantities of a constraint that vanish while constraints are active, shape (q, N)."""
+    """Return the quantities that a constraint on states keeps at zero while constraints are active, shape (q, N).
+
+    They are its last time derivative and, for order two, the time derivative of that.
+    """
     if active == (constraint,):
         return one_by_one.vanishing(instance, constraint, t, z)
     return Together(instance, active, t, z).vanishing(constraint)
@@ -120,7 +123,7 @@ class Together:
         return np.moveaxis(np.array([slope(unit) - rest for unit in np.eye(m)]), -1, 0).swapaxes(1, 2)
 
     def effects(self, which: list[int]) -> Array:
-        """Return the rows E of constraints, shape (N, k, m): derivatives of their last rates by the controls."""
+        """Return the rows E of constraints, (N, k, m): derivatives of their last time derivatives by the controls."""
         found, x, m = [], self.z[: self.n], len(self.instance.model.spec.controls)
         held = one_by_one.effects(self.instance, self.t, x, np.zeros((m, len(self.t))))
         rest = self._last_rates(which, np.zeros((m, len(self.t))))
@@ -130,7 +133,7 @@ class Together:
         return np.moveaxis(np.array(found), -1, 0)
 
     def _last_rates(self, which: list[int], u: Array) -> Array:
-        """Return the last rates of constraints for given controls, (k, N); for control constraints their values."""
+        """Return last time derivatives of constraints for given controls, (k, N); values for control constraints."""
         x, model = self.z[: self.n], self.instance.model
         h = len(model.spec.path_constraints)
         rates = np.asarray(model.path_rates_batch(self.t, x, u, self.instance.parameters))
@@ -180,7 +183,10 @@ class Together:
 
     @property
     def _of_one_order(self) -> Array:
-        """Return multipliers of constraints on states of equal order: alone M_kk eta_k = -a_k, together M eta = -a."""
+        """Return multipliers of constraints on states of equal order from those that each would have alone.
+
+        For a single constraint M_kk eta_k = -a_k, for all together M eta = -a.
+        """
         effect = self.effects(list(self.active))
         gram = effect @ np.linalg.solve(self.curvature, effect.swapaxes(1, 2))
         alone = np.array([one_by_one.multiplier(self.instance, k, self.t, self.z) for k in self.active])
@@ -189,7 +195,7 @@ class Together:
 
     @cached_property
     def _partial(self) -> Array:
-        """Rates with the multipliers of control constraints only."""
+        """Rates of states and costates with the multipliers of control constraints only."""
         return self.along(self._eta(self._holding[1], self._of_order(0)))
 
     def _eta(self, found: Array, which: list[int]) -> Array:
@@ -205,7 +211,7 @@ class Together:
 
     @cached_property
     def _of_first_order(self) -> Array:
-        """Multipliers of constraints of order one, for which the time derivatives of their last rates vanish."""
+        """Multipliers of constraints of order one, which keep the first time derivatives of these constant."""
         if not (which := self._of_order(1)):
             return np.zeros((0, len(self.t)))
         rates = self._rates_of(which)
@@ -214,7 +220,7 @@ class Together:
         return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
 
     def _rates_of(self, which: list[int]) -> Rates:
-        """Return a function that gives the last rates of some constraints at other points."""
+        """Return a function that gives the last time derivatives of some constraints at other points."""
 
         def rates(t: NDArray[Any], z: NDArray[Any]) -> Array:
             there = Together(self.instance, self.active, t, z)
@@ -224,12 +230,12 @@ class Together:
 
     @cached_property
     def _without_second(self) -> Array:
-        """Rates without the multipliers of constraints of order two."""
+        """Rates of states and costates without the multipliers of constraints of order two."""
         first = self._eta(self._of_first_order, self._of_order(1))
         return self.along(self._eta(self._holding[1], self._of_order(0)) + first)
 
     def _next(self, which: list[int]) -> Array:
-        """Return time derivatives of the last rates of constraints of order two, shape (k, N)."""
+        """Return the time derivatives of the last time derivatives of constraints of order two, shape (k, N)."""
         if not self._of_order(0, 1) and set(which) <= set(self.active):
             known = [one_by_one.vanishing(self.instance, k, self.t, self.z)[1] for k in which]
             return np.array(known).reshape(len(which), len(self.t))
@@ -237,7 +243,7 @@ class Together:
 
     @cached_property
     def _of_second_order(self) -> Array:
-        """Multipliers of constraints of order two, for which the second time derivatives of their last rates vanish."""
+        """Multipliers of constraints of order two, which keep the quantities of ``_next`` constant."""
         if not (which := self._of_order(2)):
             return np.zeros((0, len(self.t)))
 
@@ -249,7 +255,7 @@ class Together:
         return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
 
     def vanishing(self, constraint: int) -> Array:
-        """Return the last rate of a constraint on states and, for order two, its time derivative, shape (q, N)."""
+        """Return the last time derivative of a constraint on states and, for order two, its time derivative, (q, N)."""
         last = self._last_rates([constraint], self.control)
         return last if order(self.instance, constraint) < 2 else np.concatenate([last, self._next([constraint])])
 

@@ -18,7 +18,7 @@ from satsym.solvers.constrained.law import by_newton, stationary
 from satsym.solvers.constrained.structure import FREE, Active, Junction, Structure
 
 NONE = -1
-"""Stands for no active constraint in place of the index of a constraint."""
+"""Value that stands for "no constraint" in place of the index of an active constraint."""
 
 OF_TERMS = 1e-3
 """Minimum scale of a constraint, relative to its terms, for constraints that are almost always on their boundary."""
@@ -79,7 +79,10 @@ def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array
 
 
 def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
-    """Return the further quantities that vanish on a boundary, (q, N); for control constraints at its ends."""
+    """Return the quantities that a constraint keeps at zero on its boundary, (q, N).
+
+    For a control constraint it is the quantity that vanishes where its arc begins and ends.
+    """
     model, n = instance.model, len(instance.initial)
     u = control(instance, NONE, t, z)
     found = model.path_vanishing_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
@@ -196,7 +199,7 @@ class Arcs:
     instance: Instance
     structure: Structure
     intervals: tuple[int, ...]
-    """Number of intervals of each arc."""
+    """Number of collocation intervals of each arc."""
     unknown: Array
     passed: tuple[tuple[float, float], ...] = ()
     """Pairs of the cost and the size of a step or residual, one for each iteration so far."""
@@ -224,7 +227,7 @@ class Arcs:
 
     @cached_property
     def rest(self) -> Rest:
-        """Positions of the other unknowns."""
+        """Positions of the unknowns other than the values on arcs."""
         first, count = self.places[-1], len(self.junctions)
         jumps = [(k, which) for k, one in enumerate(self.junctions) for which, _ in one.jumps]
         c = len(self.instance.model.spec.multipliers)

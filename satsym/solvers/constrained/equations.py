@@ -189,7 +189,7 @@ def _passed(arcs: Arcs, junction: Junction, v: Array) -> list[NDArray[Any]]:
 
 
 def hamiltonian(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """Return H under the control of an arc, shape (N,)."""
+    """Return the Hamiltonian under the control of an arc, shape (N,)."""
     n, u = len(instance.initial), control(instance, active, t, z)
     return np.asarray(instance.model.hamiltonian_batch(t, z[:n], u, z[n:], instance.parameters))
 
@@ -210,7 +210,7 @@ def at_end(instance: Instance, active: Active, t: Array, z: Array, nu: tuple[Any
 
 
 def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
-    """Return g and, for order two, its first time derivative, shape (q, 1)."""
+    """Return the value of a constraint and, for order two, its first time derivative, shape (q, 1)."""
     model, p = instance.model, instance.parameters
     rest = np.zeros((len(model.spec.controls), 1))
     found = [values(instance, t, x, rest)[constraint]]

@@ -54,7 +54,7 @@ def by_newton(
 
 
 def smallest_curvature(instance: Instance, active: Active, t: Array, z: Array) -> float:
-    """Return the smallest eigenvalue of H_uu, or of its form on active constraints; infinite if none is left."""
+    """Return the smallest eigenvalue of H_uu on the active constraints; infinite if these fix all controls."""
     m = len(instance.model.spec.controls)
     bordered = _slopes(instance, active, t, z, np.concatenate(by_newton(instance, active, t, z)))
     table = bordered[:, :m, :m]
@@ -65,7 +65,7 @@ def smallest_curvature(instance: Instance, active: Active, t: Array, z: Array) -
 
 
 def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[Any], w: NDArray[Any]) -> NDArray[Any]:
-    """Return H_u + mu' g_u and g, shape (m + k, N)."""
+    """Return the residuals of the equations for controls and multipliers, H_u + mu' g_u and g, shape (m + k, N)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, h = z[:n], w[:m], len(model.spec.path_constraints)
     slope = np.broadcast_to(np.asarray(model.stationarity_batch(t, x, u, z[n:], p)), (m, len(t)))
@@ -75,7 +75,7 @@ def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[
 
 
 def _slopes(instance: Instance, active: Active, t: Array, z: Array, w: Array) -> Array:
-    """Return derivatives of the conditions by controls and multipliers, shape (N, m + k, m + k)."""
+    """Return derivatives of the equations for controls and multipliers by these, shape (N, m + k, m + k)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, count = z[:n], w[:m], len(t)
     found = np.zeros((len(w), len(w), count))

@@ -112,7 +112,7 @@ def _instead(arcs: Arcs, places: int | Iterable[int], *others: Contact) -> Struc
 
 
 def _ends_kept(one: Contact, *parts: Contact) -> list[Contact]:
-    """Return parts of a contact; the first and last keep its mark of lasting from the start or until the end."""
+    """Return parts of a contact, with the flags of lasting from the start or until the end for the outer parts only."""
     return [
         replace(part, opens=one.opens and part.start <= one.start, closes=one.closes and part.end >= one.end)
         for part in parts
@@ -215,7 +215,7 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 
 def _one_contact(first: Contact, second: Contact) -> Contact:
-    """Return one contact from the start of a contact to the end of a later one."""
+    """Return one contact that extends from the start of a contact to the end of a later one."""
     jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
     return Contact(first.constraint, first.start, second.end, jumps, first.opens, second.closes)
 

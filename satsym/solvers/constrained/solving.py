@@ -27,8 +27,8 @@ from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
 REVISED, REPEATED = 12, 2
-"""Maximum number of structures that are tried from one motion, and how often one structure is tried with other
-junctions."""
+"""Maximum number of structures that are tried from one motion, and maximum number of times that a structure is tried
+with changed junction times."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,8 @@ MOVED = 1e-6
 """Change of a control between two points, relative to the largest control, above which it may jump between them."""
 
 WHOLE, FAINT_JUMP = 8, 0.1
-"""Number of bisections during which this limit holds, and the fraction of a jump that has to remain afterwards."""
+"""Number of bisections during which the limit ``MOVED`` holds, and the fraction of a jump that has to remain
+afterwards."""
 
 POLISHED = 8
 """Maximum number of Newton steps to a minimiser of H nearby."""
@@ -66,7 +67,7 @@ class Saltation:
 
     @property
     def gap(self) -> Array:
-        """Return the gap at a node that is not yet at the jump, shape (2n,)."""
+        """Return the gap between two intervals at a node that is not yet at the jump, shape (2n,)."""
         return np.asarray(self.leap * (self.excess / self.speed))
 
 

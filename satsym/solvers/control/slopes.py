@@ -64,7 +64,7 @@ def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.
 
 
 def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
-    """Return continuous controls over time: angles without jumps by a turn, undetermined directions as before."""
+    """Return continuous controls over time: angles without jumps by a turn, undetermined directions held."""
     open_ones, found = undecided(instance, t, x, lam), np.array(u)
     for row, unknown in enumerate(open_ones):
         if unknown.any() and not unknown.all():

@@ -133,7 +133,7 @@ class Problem:
 
 
 def points(mesh: Array, nodes: Array) -> Array:
-    """Return the positions (k, s) of s nodes of a scheme in each of k intervals with these edges."""
+    """Return the positions (k, s) of the s nodes of a scheme in each of k intervals with given edges."""
     return np.asarray(mesh[:-1, None] + np.diff(mesh)[:, None] * nodes)
 
 
@@ -205,7 +205,7 @@ def _placed(problem: Problem, free: Array) -> Parameters:
 
 
 def _end(problem: Problem, y: Array) -> Array:
-    """Return the residuals of the derived conditions at the final time."""
+    """Return the residuals of the derived boundary conditions at the final time."""
     n, instance = problem.n, problem.instance
     nu = len(instance.model.spec.multipliers)
     z, multipliers, free = y[: 2 * n], tuple(y[2 * n : 2 * n + nu]), y[2 * n + nu :]
@@ -338,7 +338,7 @@ def _by_free(one: Assembly) -> None:
 
 
 def _differences(problem: Problem, p: Parameters, function: Callable[[Parameters], Any]) -> Array:
-    """Return derivatives (f, M) of a function by free parameters, by real differences of complex values."""
+    """Return derivatives (f, M) of a function by free parameters, by real differences; its values may be complex."""
     rows = []
     for place, size in zip(problem.parameters, problem.sizes[2], strict=True):
         total: Any = 0.0

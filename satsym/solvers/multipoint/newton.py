@@ -36,7 +36,7 @@ class Extremal:
     problem: Problem
     unknown: Array
     step: float
-    """Magnitude of the last Newton step or change from the previous mesh, whichever is larger, relative."""
+    """Relative magnitude of the last Newton step or of the change from the previous mesh, whichever is larger."""
     iterations: int
 
     @property

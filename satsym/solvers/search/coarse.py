@@ -24,7 +24,7 @@ from satsym.solvers.search.starts import Plan
 from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
-"""Maximum number of starts."""
+"""Maximum number of starts of the direct search."""
 
 ITERATIONS, ASTRAY = 300, 50
 """Maximum number of iterations of the interior-point code for a start, and for a competitor from a curved path to a
@@ -108,8 +108,8 @@ def _less_smoothed(
 
     Parameters
     ----------
-    Costs of the first programme and the solutions they led to; the new solution is appended.
-        Costs of the first programme and what they led to; what is found is added.
+    known
+        Costs of the first programme and the solutions they led to; the new solution is appended.
     """
     start = starts.begun(programmes[0], plan)
     if plan.timed:

@@ -23,8 +23,8 @@ ROUNDING = 1e-12
 """Rate of a state, relative to the largest rate, that counts as rounding."""
 
 TELLING = 1e-4
-"""Magnitude of a state in the motion at rest, relative to the magnitude that would move other states by their own,
-below which the motion tells nothing about the state's scale."""
+"""Magnitude of a state in the motion at rest, relative to an estimate from its effect on other states, below which the
+estimate is used as the state's scale instead."""
 
 LEVEL = 0.3
 """Magnitude of the controls, relative to their scales, at which the cost is evaluated."""
@@ -143,7 +143,7 @@ def _largest(instance: Instance, controls: Controls, x: Array) -> Array:
 
 
 def _through_others(instance: Instance, controls: Controls, duration: float, size: Array, rest: Rest) -> Array:
-    """Return scales of states without given values: magnitudes that move the other states by their scales."""
+    """Return scales of states without given values, by their effects on states whose scales are known."""
     n, size = len(size), size.copy()
     v = rest.controls + 0.1 * reaches(controls)
     x = np.array(instance.initial) + 1e-3 * size
@@ -209,7 +209,7 @@ def _of_controls(instance: Instance, controls: Controls, duration: float, rest: 
 
 
 def _needed(instance: Instance, controls: Controls, duration: float, x: Array, missed: Array) -> Array:
-    """Return the smallest value of each variable alone that corrects some part of the miss; zero if none does."""
+    """Return the smallest value of each variable alone that corrects some deviation from the end; 0 if none does."""
     found = np.zeros(controls.count)
     for k in range(controls.count):
         moved = np.full(controls.count, 0.1 + 0.0j)

@@ -374,7 +374,7 @@ def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tup
 
 
 def _followed(programme: Programme, times: Array, x: Array, free: Array, v: Array) -> Array:
-    """Return states in which those that are free at the end follow from integration along the others."""
+    """Return states in which those that are free at the end are integrated along the path of the other states."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes.states
     x, y = x.copy(), x[:, 0].copy()
     for k in range(len(times) - 1):

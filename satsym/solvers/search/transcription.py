@@ -79,7 +79,7 @@ class Rows:
 
     @property
     def places(self) -> slice:
-        """Positions of these rows among all rows."""
+        """Positions of the rows of this kind among all constraint rows."""
         return slice(self.first, self.first + len(self.lower))
 
 

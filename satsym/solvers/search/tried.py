@@ -1,4 +1,4 @@
-"""Results of starts of a search, in comparison with an answer, and the results kept for the next, cheaper answer."""
+"""Results of starts of the direct search as competitors of an answer, kept for the next, cheaper answer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Answer = TypeVar("Answer")
 
 @dataclass(frozen=True)
 class Tried(Generic[Answer]):
-    """Result of a start of the search, in comparison with an answer.
+    """Result of a start of the direct search, as a competitor of an answer.
 
     Attributes
     ----------

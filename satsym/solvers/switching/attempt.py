@@ -126,7 +126,10 @@ def nearest(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
 
 
 def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """Return the extremal of a structure, exact relative to its own states, which may be smaller than in the guess."""
+    """Return the extremal of a structure, accurate relative to the magnitudes of its own states, or ``None``.
+
+    The states of the guess may be larger, so that accuracy relative to these is not enough.
+    """
     found = nearest(instance, at, limits) or _in_parts(instance, at, limits)
     for last in (False, True):
         if found is None or found.residual > SOLVED or not found.at.end > instance.t0:
@@ -186,7 +189,7 @@ def given(instance: Instance) -> Array:
 
 
 def sizes(instance: Instance, at: Guess) -> Array:
-    """Return scales of states, from given ends and the guessed motion, and of costates, from their guess."""
+    """Return scales of states, from given ends and the guessed motion, and scales of costates, from their guess."""
     n = len(instance.initial)
     states = given(instance)
     equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)

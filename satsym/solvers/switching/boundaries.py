@@ -69,7 +69,7 @@ def off_boundaries(trajectory: Trajectory, slack: float = 1e-9) -> list[Violatio
 
 
 def _pulling(arcs: list[Arc], slack: float) -> list[Violation]:
-    """Return the jumps of the wrong sign, as places for a singular arc between."""
+    """Return costate jumps of the wrong sign, as places between arcs at which a singular arc is inserted."""
     found = []
     for k, (before, after) in enumerate(pairwise(arcs)):
         for which, one in ((k, before), (k + 1, after)):

@@ -55,7 +55,7 @@ class BoundaryField(Field):
         return np.broadcast_to(found[self.constraint], t.shape)
 
     def off_bound(self, bound: float, t: float, z: list[float]) -> tuple[float, Array, float]:
-        """Return the control minus a bound, relative to its range, and derivatives as :func:`off_boundary` does."""
+        """Return the control minus a bound, relative to its range, and derivatives by z, (2n,), and explicit time."""
         low, high = self.instance.lower[self.acting], self.instance.upper[self.acting]
         found = self.controls(*_moved(t, z))[self.acting] / (high - low)
         return float(found[0].real - bound / (high - low)), found[:-1].imag / NUDGE, float(found[-1].imag / NUDGE)

@@ -25,7 +25,7 @@ ROUGH = 1e-7
 """Error tolerance of a step if only rough accuracy is needed, relative to the scale of each component."""
 
 ROUNDING = 1e-14
-"""Relative length of a piece below which it is not integrated."""
+"""Length of a piece, relative to the time, below which it is not integrated."""
 
 WHOLE = 1.0
 """First step that is tried, as a fraction of a piece."""
@@ -49,7 +49,8 @@ class Stop:
 
     piece: int
     fraction: float
-    """Index of the piece between switches of any control, and the fraction of the piece after which the restart is."""
+    """Index of the piece between switches of any control, and the fraction of the piece after which the restart
+    follows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ class Arc:
     """A piece between two switches of any control, or a part of one between restarts."""
 
     field: Field
-    """Equations of the piece."""
+    """Equations of motion on the piece, with the levels of the controls."""
     start: float
     end: float
     """Start and end of the piece."""

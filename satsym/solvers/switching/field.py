@@ -126,7 +126,7 @@ class Field:
         return float(self.model.magnitude_weight(t, z[: self.n], z[self.n :], self.p)[control])
 
     def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
-        """Return derivatives of this weight by states and costates, shape (2n,), and its rate along the extremal."""
+        """Return derivatives of the weight of |u| by states and costates, (2n,), and its rate along the extremal."""
         steps = np.concatenate([np.eye(2 * self.n), np.array(self.rates(t, z))[:, None]], axis=1)
         x, lam = np.split(np.array(z)[:, None] + 1j * NUDGE * steps, 2)
         times = t + 1j * NUDGE * np.append(np.zeros(2 * self.n), 1.0)
@@ -135,19 +135,19 @@ class Field:
         return slopes[:-1], float(slopes[-1])
 
     def ratios(self, control: int) -> tuple[float, ...]:
-        """Return the factors of the weight in the switching conditions from a control's level to each other level."""
+        """Return the factors of the weight of |u| in the switching conditions from a control's level to the others."""
         now = self.levels[control]
         others = (level for level in (LOWER, REST, UPPER) if level != now)
         return tuple(dict.fromkeys(self.ratio(control, (now, level)) for level in others))
 
     def ratio(self, control: int, levels: tuple[int, int]) -> float:
-        """Return the factor of the weight in the switching condition between two levels, see :func:`ratio`."""
+        """Return the factor of the weight of |u| in the switching condition between two levels, see :func:`ratio`."""
         if max(levels) >= SINGULAR:
             return 0.0
         return ratio(*(self._at(control, level) for level in levels))
 
     def passing(self, t: float, z: list[float], control: int, ratio: float) -> tuple[float, float]:
-        """Return the value of the switching condition with the given factor of the weight, and its time derivative."""
+        """Return the value of the switching condition for a factor of the weight of |u|, and its time derivative."""
         sigma, rate = self.switching(t, z, control)
         if not ratio:
             return sigma, rate
@@ -206,7 +206,7 @@ class Field:
         return np.asarray(found[control].imag / NUDGE)
 
     def _feedback(self, t: float, z: list[float]) -> tuple[tuple[float, ...], Array, Array]:
-        """Return the controls on a singular arc, the gradient of the switching rate, and the effect on z."""
+        """Return the controls on a singular arc, the gradient of the switching rate, and the control's effect on z."""
         assert self.singular is not None
         x, lam, idle = z[: self.n], z[self.n :], self._with(0.0)
         gradient = self.gradient(t, z, self.singular)

@@ -13,7 +13,7 @@ from satsym.instance import Instance
 
 
 def ratio(u: float, v: float) -> float:
-    """Return the factor of the weight of a magnitude in the switching condition between two levels."""
+    """Return the factor of the weight of |u| in the condition of a switch between two levels."""
     return (abs(u) - abs(v)) / (u - v) if u != v else 0.0
 
 

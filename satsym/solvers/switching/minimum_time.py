@@ -121,7 +121,7 @@ class _LeastTime:
     def canonical_jacobian_batch(
         self, t: Array, x: Array, lam: Array, p: Any, bounds: Any, out: Array | None = None
     ) -> Array:
-        """Return derivatives of these rates by states and costates, shape (2n, 2n, N)."""
+        """Return derivatives of the rates of states and costates under the regularised control law, (2n, 2n, N)."""
         n, m = self.n, self.m
         u, free = self.law(t, x, lam, p, bounds)
         smoothing = ControlSet.from_arguments(self.model.spec, bounds).smoothing

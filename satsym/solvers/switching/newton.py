@@ -20,10 +20,10 @@ from satsym.solvers.switching.structure import BOUNDARY, SINGULAR, Structure, co
 
 MOST_STEPS = 20
 NEAR_CORRECTION = 1e-2
-"""Size of a correction below which arcs are integrated at full accuracy; before, rough accuracy is enough."""
+"""Size of a correction below which arcs are integrated at full accuracy; above it rough accuracy is enough."""
 
 SETTLED_CORRECTION = 1e-7
-"""Size of a correction below which it is the last one."""
+"""Size of a correction below which no further correction follows."""
 
 LOST = 1e4
 """Size of a correction above which the iteration is given up."""
@@ -217,7 +217,7 @@ class Equations:
         return later
 
     def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
-        """Return the conditions at the start of a first arc that is singular or on a boundary."""
+        """Return the conditions at the initial time if the first arc is singular or on a boundary."""
         kept = first.field.kept
         if kept is None:
             return []
@@ -257,7 +257,7 @@ class _Switch:
         return value / size, self._moving(field.passing_gradient(*place, ratio), rate) / size
 
     def rate_row(self, sizes: Array) -> tuple[float, Array]:
-        """Return the scaled rate of the switching function, and its derivatives by the unknowns."""
+        """Return the scaled rate of the switching function at the switch, and its derivatives by the unknowns."""
         field, place = self.field, (self.t, self.z, self.control)
         gradient = field.rate_gradient(*place)
         _, rate = field.switching(*place)

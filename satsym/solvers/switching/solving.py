@@ -180,7 +180,7 @@ def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
 
 
 def _found(instance: Instance, limits: Limits, search: Search) -> Exact | homotopy.Stopped:
-    """Return exact arcs, or why none were found."""
+    """Return exact arcs from rest, the reachable set or the direct search, or the reason of the failure."""
     resting = _resting(instance)
     found = attempt(instance, resting, limits) if resting else None
     if found is not None:

@@ -152,6 +152,6 @@ class Guess:
     end: float
     """The final time."""
     course: Course | None = None
-    """States and costates along the motion, if they are known better than by integration; otherwise ``None``."""
+    """States and costates along the motion if they are known from another source than integration, else ``None``."""
     bounded: bool = False
-    """Whether path constraints have to hold."""
+    """Whether path constraints are required to hold."""

@@ -21,8 +21,7 @@ from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import BOUNDARY
 
 NOTHING = 1e-300
-"""Level in place of zero: exactly at a switch the deciding margin is zero as well, and must not be equal to the
-level."""
+"""Level in place of zero, since a level must not be equal to the deciding margin, which is zero at a switch."""
 
 ON_BOUND = 1e-12
 """Distance from a bound below which a control counts as being at the bound."""
@@ -116,7 +115,7 @@ def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Ar
 
 
 def switched(instance: Instance, u: Array) -> Array:
-    """Return the switching quantities: controls or, in products of sets, single controls and norms, shape (r, N)."""
+    """Return the quantities that switch: controls or, in products of sets, single controls and norms, (r, N)."""
     if not instance.model.spec.throttled:
         return u
 
@@ -127,7 +126,7 @@ def switched(instance: Instance, u: Array) -> Array:
 
 
 def by_control(instance: Instance, times: list[tuple[float, ...]]) -> tuple[tuple[float, ...], ...]:
-    """Return the switching times of each control, from those of the switching quantities."""
+    """Return the switching times of each control, from those of the controls and norms that switch."""
     if not instance.model.spec.throttled:
         return tuple(times)
     throttled = [places for places, part in instance.control_set.parts if part.throttled]
@@ -136,14 +135,14 @@ def by_control(instance: Instance, times: list[tuple[float, ...]]) -> tuple[tupl
 
 
 def shown_by(instance: Instance) -> list[int]:
-    """Return for each switching quantity the index of a control that has its switching times."""
+    """Return for each switching control or norm the index of a control that has its switching times."""
     if not instance.model.spec.throttled:
         return list(range(len(instance.lower)))
     return [places[0] for places, part in instance.control_set.parts if part.throttled]
 
 
 def resting(instance: Instance) -> tuple[bool, ...]:
-    """Return for each switching quantity whether it can optimally be at rest."""
+    """Return for each switching control or norm whether it can optimally be at rest."""
     if instance.model.spec.throttled:
         return (False,) * len(instance.control_set.switching[0])
     return magnitudes.resting(instance)

@@ -39,7 +39,7 @@ SLACK = 0.7
 range may have no solutions nearby."""
 
 WORK = 400_000
-"""Maximum work of these searches, in unknowns times iterations."""
+"""Maximum work of the searches for a first choice of the free quantities, in unknowns times iterations."""
 
 SETTLED_SLOPE = 1e-11
 """Relative derivative of the minimum cost at which the iteration has converged."""
@@ -285,7 +285,7 @@ def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
 
 
 def _polished(trials: Trials, here: Trial, form: Array) -> Trial:
-    """Improve a trial by Newton's method with the measured second derivatives."""
+    """Improve a trial by Newton's method with the computed second derivatives."""
     for _ in range(POLISHING):
         if here.residual <= SETTLED_SLOPE or softest(form, STILL * here.size)[0] <= FLAT:
             break
@@ -328,7 +328,7 @@ def _updated(form: Array, step: Array, change: Array) -> Array:
 
 
 def _met_beside(trials: Trials, here: Trial) -> str | None:
-    """Return why the slope does not vanish although no step decreases the cost; ``None`` if unknown."""
+    """Return why the derivative of the minimum cost does not vanish although no step decreases it, or ``None``."""
     length = max(float(np.linalg.norm(here.slope)), 1e-300)
     beside = [trials(here.at + sign * NEAR_UNITS * here.slope / length) for sign in (1.0, -1.0)]
     if beside[1] is None:

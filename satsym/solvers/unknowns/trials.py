@@ -18,7 +18,7 @@ from satsym.status import Status
 from satsym.wording import counted
 
 Solver = Callable[[Instance, Progress | None], Solution]
-"""Function that solves an instance in which all these quantities are given."""
+"""Function that solves an instance without free initial values and parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Trial:
     slope: Array
     """Derivatives of the minimum cost with respect to the free quantities, per unit."""
     residual: float
-    """Largest relative derivative."""
+    """Largest relative derivative of the minimum cost."""
 
     @property
     def cost(self) -> float:
@@ -50,7 +50,7 @@ class Late(Exception):
 
 @dataclass(eq=False)
 class Trials:
-    """Solver for successive choices of the free quantities, which keeps the results."""
+    """Solver for successive choices of the free initial values and parameters, which keeps the results."""
 
     instance: Instance
     solver: Solver

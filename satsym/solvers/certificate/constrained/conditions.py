@@ -127,7 +127,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:
-    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each with a value that is positive if it fails."""
     least, most = _least_multiplier(solution, again, strict=True)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
     vanishing = [Check("a multiplier vanishes on a boundary arc", float(not strict), 0.0)]
@@ -150,7 +150,7 @@ def _controls(solution: Solution, piece: Piece) -> tuple[Array, Array, Array]:
 
 
 def _stationarity(solution: Solution, again: Replay) -> float:
-    """Return the largest difference of the control from the minimiser of H on the active constraints, relative."""
+    """Return the largest relative difference of the control from the minimiser of H on the active constraints."""
     z = np.concatenate([solution.x, solution.lam])
     parts = [control(solution.instance, p.active, solution.times[p.nodes], z[:, p.nodes]) for p in again.pieces]
     law = np.concatenate(parts, axis=1)
@@ -249,13 +249,12 @@ def _multipliers(solution: Solution, again: Replay) -> list[Array]:
 
 
 def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
-    """Return the minimum, on active arcs, of the quantity that makes each control-dependent constraint active.
+    """Return for each control constraint the minimum, on its active arcs, of the value it would have if inactive.
 
     Parameters
     ----------
     tent
-        Whether this quantity is divided by the fraction of the arc since the entry or until the exit, where it
-        vanishes.
+        Whether this value is divided by the fraction of the arc since the entry or until the exit, where it vanishes.
     """
     instance, found, sizes = solution.instance, list[float](), _sizes(solution, again)
     for which in {k for piece in again.pieces for k in piece.active if holds_control(instance, k)}:
@@ -273,7 +272,7 @@ def _runs(pieces: list[Piece], which: int) -> list[list[Piece]]:
 
 
 def _least_push(solution: Solution, t: Array, push: Array, tent: bool) -> float:
-    """Return the minimum over an active interval of the quantity ``push`` that makes a constraint active."""
+    """Return the minimum, over an active interval, of the value that a constraint would have if inactive."""
     (begin, end), (a, b) = solution.times[[0, -1]], t[[0, -1]]
     if tent:
         share = np.minimum(t - a if a > begin else np.inf, b - t if b < end else np.inf) / (b - a)
@@ -284,8 +283,8 @@ def _least_push(solution: Solution, t: Array, push: Array, tent: bool) -> float:
 def _negative(solution: Solution, again: Replay) -> float:
     """Return the largest negative multiplier along an arc or at a junction, relative to the largest multiplier.
 
-    For constraints that involve the control, the quantity that makes them active takes the place of the multiplier,
-    relative to the constraint's magnitude.
+    For control constraints, the value that they would have if inactive takes the place of the multiplier, relative to
+    the constraint's magnitude.
     """
     least, most = _least_multiplier(solution, again, strict=False)
     return max(0.0, float(-least / most), -min(_pushed(solution, again, tent=False), default=0.0))

@@ -22,7 +22,7 @@ SHORT_ARC = 0.02
 """Length of an arc that replaces a touch point, before it and after it together, as a fraction of the duration."""
 
 WORK = 20_000
-"""Maximum number of columns that may be linearised for one variant."""
+"""Maximum number of points at which equations may be linearised for one variant."""
 
 
 def near(solution: Solution, deadline: float) -> tuple[int, list[float], bool]:

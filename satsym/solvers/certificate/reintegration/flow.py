@@ -21,7 +21,7 @@ TOLERANCE = 1e-13
 """Error tolerance of a step, relative to the magnitude of each component."""
 
 FINEST = 4.0 * np.finfo(float).eps
-"""Rounding error of a rate, relative to the terms that it is the sum of."""
+"""Rounding error of a rate, relative to the sum of the magnitudes of its terms."""
 
 ROUGHLY = 1e-9
 """Error tolerance of a step, relative, if only an order of magnitude is needed."""

@@ -62,7 +62,7 @@ def _off(again: Replay, room: Array) -> float:
 
 
 def _jumps(again: Replay) -> list[tuple[float, float]]:
-    """Return multipliers at the ends of boundary arcs, and jumps that they do not explain, both relative."""
+    """Return multipliers at the ends of boundary arcs, and jumps beyond those they explain, both relative."""
     found = []
     for before, after in pairwise(again.pieces):
         for field in (before.field, after.field):

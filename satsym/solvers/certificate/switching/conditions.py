@@ -122,7 +122,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 
 def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check]:
-    """Return checks of sufficient conditions, each of a deficit that must not be positive."""
+    """Return checks of sufficient conditions, each with a value that is positive if it fails."""
     free = [decided_by_none(solution, control) for control in range(len(shown_by(solution.instance)))]
     extended = with_end_switches(again, _along(again)[0])
     rates, gap, distance = _strictness(again, extended, free)
@@ -331,9 +331,9 @@ def curvature(solution: Solution, again: Replay, by: Integration) -> tuple[float
     Parameters
     ----------
     solution
-        The repeated integration of the solution.
+        Extremal whose arcs are saturated, on boundaries, or of throttled vectors.
     again
-        The solution again.
+        The repeated integration of the solution.
     by
         Integration of the arcs.
     """

@@ -54,7 +54,7 @@ class Mark:
         return max(float(np.abs(self.field.gradient(t, z.tolist(), self.control)) @ sizes), 1e-300)
 
     def blurred(self, span: Span, sizes: Array) -> float:
-        """Return the initial fraction of a span in which the sign of the condition is unreliable.
+        """Return the initial fraction of a span in which the sign of the switching condition is unreliable.
 
         The fraction is larger if the rate vanishes at the start as well, as at the end of a singular arc, where the
         sign of a negligible value is that of rounding.
@@ -64,7 +64,7 @@ class Mark:
         return AT_ONCE**0.5 if flat else AT_ONCE
 
     def sign(self, span: Span, by: Integration) -> float:
-        """Return the sign of the condition at the start of a span, or right after it if the value vanishes."""
+        """Return the sign of the switching condition at the start of a span, or right after it if it is zero there."""
         now, rate = self.gap(span.start, span.z.tolist())
         if abs(now) > AT_ONCE * self.size(span.start, span.z, by.sizes):
             return float(np.sign(now))
@@ -103,9 +103,9 @@ def next_switch(span: Span, settled: list[bool], by: Integration, spread: Array)
     Raises
     ------
     ArithmeticError
-        If SciPy cannot integrate so far.
+        If SciPy cannot integrate to the end of the span.
     OutOfTime, TooMuchWork
-        If the limits do not allow it.
+        If the limits of time or work are exceeded.
     """
     field, start, marks = span.field, span.start, _marks(span, settled)
     if not marks or span.lasting <= 0.0:

@@ -30,7 +30,7 @@ Stated = list[list[tuple[float, float, int]]]
 
 
 def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
-    """Return start, end and level of each arc of a control, read from a solution, mainly to find singular arcs."""
+    """Return start, end and level of each arc of a control, as stated by a solution, mainly to find singular arcs."""
     instance = solution.instance
     low, high = (bounds[control] for bounds in instance.control_set.switching)
     switches = solution.switching_times[shown_by(instance)[control]]

@@ -21,8 +21,8 @@ SAMPLES, CLEAR_JUMP = 12, 1e-3
 largest control, that counts as a jump."""
 
 STILL, MOST_MOVES = 1e-12, 25
-"""Movement of jumps, as a fraction of the duration, below which they count as stationary; maximum number of
-movements."""
+"""Movement of jumps, as a fraction of the duration, below which they count as stationary. Maximum number of times that
+nodes are moved to the jumps."""
 
 ROUGHLY = 1e-4
 """Relative size of a step below which Newton's method completes the iteration."""

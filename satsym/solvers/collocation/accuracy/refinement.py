@@ -43,7 +43,8 @@ SPARE = 0.1
 """Error for which the next mesh is designed, relative to the error aimed at."""
 
 POINTS, MORE = 16, 24
-"""Numbers of points of each interval: at first, and if the truncation error is slightly too large for the first."""
+"""Number of points of each interval at first, and number if the truncation error is slightly too large for the
+first."""
 
 MOST_CORRECTIONS = 6
 """Maximum number of defect corrections of one solution."""

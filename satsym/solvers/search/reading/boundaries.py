@@ -30,7 +30,7 @@ UNMET = "no path constraint is ever active"
 """Message for answers on which no path constraint is active."""
 
 WORK = 200_000
-"""Maximum number of columns that may be linearised for one motion."""
+"""Maximum number of points at which equations may be linearised for one motion."""
 
 SHORTEST = (3, 8)
 """Maximum numbers of points of a singular arc between bounds that is ignored, tried one after the other."""

@@ -31,7 +31,7 @@ SHORT_ARC, OFF = 0.5, 1e-6
 from a boundary, relative to the constraint's magnitude, that counts as being on it."""
 
 NEAR_BOUNDARY = 1e-2
-"""Minimum scale of a constraint's slacks, relative to the constraint's terms."""
+"""Minimum scale of a constraint's slacks, relative to the terms of the constraint, used if all slacks are smaller."""
 
 
 def read(at: Motion, shortest: int) -> Guess:
@@ -78,7 +78,7 @@ def _with_ends(held: Along, row: list[int], times: list[float]) -> tuple[list[in
 
 
 def _with_jumps(held: Along, row: list[int], times: Array, x: Array) -> tuple[int, ...]:
-    """Return levels marked with jumps where a boundary is left for, or reached from, a bound that pushes beyond it.
+    """Return levels marked with costate jumps where a boundary is entered from, or left for, a bound beyond it.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _active(held: Along) -> NDArray[np.bool_]:
 
 
 def _without_brief(levels: NDArray[np.int64], shortest: int) -> NDArray[np.int64]:
-    """Return levels without short singular runs; each half of a run takes the level beside it."""
+    """Return levels without short runs of singular levels; each half of a run takes the level beside it."""
     found = levels.copy()
     for first, last in runs(levels == SINGULAR):
         if last - first < shortest and last - first + 1 < len(levels):

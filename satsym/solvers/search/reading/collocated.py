@@ -13,7 +13,7 @@ from satsym.solvers.cold_start.by_newton import SAMPLES
 from satsym.solvers.search.motion import Motion
 
 WORK = 20_000
-"""Maximum number of columns that may be linearised from a motion."""
+"""Maximum number of points at which equations may be linearised from a motion."""
 
 
 def exact(instance: Instance, at: Motion) -> Solution | None:

@@ -25,7 +25,7 @@ CLOSE_SLACK = 1e-3
 """Slack, relative to the largest one, below which a point counts as close to a boundary."""
 
 SMALL_SLACK = 1e-2
-"""Minimum scale of the slacks, relative to the terms of the constraint."""
+"""Minimum scale of the slacks of a constraint, relative to its terms, used if all slacks are smaller."""
 
 NOTHING = 1e-6
 """Contribution of a constraint to the costates, relative to these, below which it is ignored."""
@@ -132,13 +132,13 @@ def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the first and last flagged position in each run of positions near the boundary."""
+    """Return the first and last flagged point in each run of points that are near the boundary."""
     inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
     return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 
 
 def _contact(held: Along, constraint: int, order: int, begins: int, ends: int) -> Contact:
-    """Return an arc or a touch point from the interval in which multipliers count."""
+    """Return a boundary arc or a touch point from the interval in which multipliers are significant."""
     times, z = held.times, held.pushes[constraint]
     if order > 1 and ends - begins <= INSTANT:
         weight = z[begins : ends + 1]

@@ -35,7 +35,7 @@ LOOKED = 50
 """Number of points of an arc at which signs are checked."""
 
 ROUNDS = 3
-"""Maximum number of times that corners are read again."""
+"""Maximum number of times that the corners of the control law are determined again."""
 
 SMALLEST_NORM = 1e-100
 """Norm that replaces a zero norm, for which control laws have no direction."""

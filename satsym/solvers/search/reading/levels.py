@@ -133,7 +133,7 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
 
 
 def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sample]:
-    """Return where controls are off both bounds for long, shape (m, N), and a sample with the signs of other arcs.
+    """Return where controls are off both bounds for long, shape (m, N), and a sample with signs for the other arcs.
 
     The control of a programme may jump between its bounds from point to point on a singular arc. It therefore counts as
     off its bounds between any two stretches that it spends at a bound for long or, at either end of the motion, for an
@@ -183,10 +183,11 @@ def _paused(first: Guess, seen: Sample) -> Guess:
 
 
 def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
-    """Return thresholds of switching functions that give arcs of the same total control as the programme, shape (r, 1).
+    """Return thresholds of switching functions for which arcs at upper bounds last as long as in total, shape (r, 1).
 
-    The threshold is zero if controls are at their bounds. If other controls cost nearly the same, controls are spread
-    over a time in which the signs of switching functions mean little, but their smallest values still do.
+    The total is the time integral of the controls of a programme as fractions of their ranges. The threshold is zero if
+    controls are at their bounds. If other controls cost nearly the same, the controls of the programme are spread over
+    a time in which the signs of switching functions mean little.
     """
     widths = np.gradient(times)
     found = []
@@ -199,13 +200,13 @@ def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
 
 
 def _concentrated(first: Guess, times: Array, filled: Array) -> Array:
-    """Return switching times of arcs at upper bounds with the same total control as the spread controls nearby."""
+    """Return switching times of arcs at upper bounds that concentrate controls which are spread over a longer time."""
     rows = zip(first.structure.levels, first.structure.by_control(first.times), filled, strict=True)
     return np.concatenate([_lasting(times, *row) for row in rows])
 
 
 def _lasting(times: Array, levels: tuple[int, ...], switches: Array, filled: Array) -> Array:
-    """Return switching times of one control from its values as fractions of its range."""
+    """Return switching times of a control for arcs at its upper bound with the same time integral as its values."""
     edges = np.concatenate([times[:1], switches, times[-1:]])
     found = switches.copy()
     for arc, level in enumerate(levels):

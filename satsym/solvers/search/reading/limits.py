@@ -56,7 +56,7 @@ def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
 
 
 def guessed_end(instance: Instance, at: Motion) -> Instance:
-    """Return the instance with the end of a motion as its guess of a free final time, next to which limits are met."""
+    """Return the instance with the final time of a motion as initial guess, near which end limits are active."""
     return instance if instance.tf is not None else replace(instance, tf_guess=float(at.times[-1]))
 
 

@@ -45,8 +45,8 @@ BEFORE = (3e-3, 3e-4, 3e-2)
 distance from the reachable set vanishes."""
 
 PRECISE = 1e-8
-"""Relative error of the distance of this hyperplane from the reachable set; the relative error of its direction is the
-square root of it."""
+"""Relative error of the distance between the separating hyperplane and the reachable set. The relative error of the
+hyperplane's direction is the square root of it."""
 
 BEYOND_ARRIVAL, FARTHER, TIRED = 1e-3, 1.5, 16
 """First fraction of an arrival time by which the search goes beyond it if no exact arcs are found; factor by which this
@@ -104,7 +104,7 @@ def separated_by(instance: Instance, costate: Array) -> str:
 
 
 def separating(instance: Instance) -> Plane | None:
-    """Return a plane that separates the end of a linear motion from its reachable set, or ``None``."""
+    """Return a plane that separates the end of a linear motion from its reachable set, or ``None`` if there is none."""
     motion = linear_motion(instance)
     if motion is None or instance.tf is None:
         return None
@@ -113,7 +113,7 @@ def separating(instance: Instance) -> Plane | None:
 
 
 def _soonest(instance: Instance, motion: LinearMotion, limits: Limits) -> Exact | None:
-    """Return exact arcs of the first arrival, or of a later one if the first does not lead to exact arcs."""
+    """Return exact arcs of the first arrival at the end, or of a later one if the first does not lead to any."""
     best: Exact | None = None
     for arrival in _arrivals(instance, motion, limits):
         if best is not None and arrival.duration >= _duration(instance, best):
@@ -219,8 +219,7 @@ class Arrival:
     duration: float
     """Duration from the start; nothing arrives in less than the first such duration."""
     costates: tuple[Array, ...]
-    """Final costates of all states, shape (n,), up to a factor, one for each time before the arrival at which they were
-    computed."""
+    """Final costates of all states, shape (n,), up to a factor, for several times shortly before the arrival."""
 
 
 def _arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
@@ -265,7 +264,10 @@ def _scale(instance: Instance, motion: LinearMotion) -> float:
 
 
 def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
-    """Return the first duration after a given one at which a plane no longer separates the end, or ``None``."""
+    """Return the first duration after a given one at which a plane does not separate the end, or ``None``.
+
+    The plane separates the end from the reachable set at shorter durations.
+    """
     length = scale / steps(motion, scale)
     rows = given_rows(instance)
     low, high = np.array(instance.lower), np.array(instance.upper)

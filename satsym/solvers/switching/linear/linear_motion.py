@@ -38,11 +38,11 @@ class LinearMotion:
 
     @property
     def priced(self) -> bool:
-        """Return whether the cost has this form."""
+        """Return whether the cost is a sum of time, controls and their magnitudes with constant weights."""
         return bool(np.isfinite(self.rate))
 
     def step(self, length: float) -> tuple[Array, Array, Array]:
-        """Return the effect of one step of given length: of the states, of the controls, and of the drift."""
+        """Return the effects of the states, of the controls and of the drift over one step of given length."""
         n, m = self.controls.shape
         table = np.zeros((n + m + 1, n + m + 1))
         table[:n] = np.concatenate([self.states, self.controls, self.drift[:, None]], axis=1)

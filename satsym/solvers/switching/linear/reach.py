@@ -69,16 +69,16 @@ class Reach:
 
     @cached_property
     def count(self) -> int:
-        """Number of steps."""
+        """Number of steps into which the duration is divided."""
         return self.finer * steps(self.motion, self.duration)
 
     @cached_property
     def powers(self) -> Array:
-        """State transition matrices of 0, 1, ... steps, shape (N + 1, n, n)."""
+        """State transition matrices of 0, 1, ... N steps, shape (N + 1, n, n)."""
         return self.motion.powers(self.duration / self.count, self.count)
 
     def pushing(self, costate: Array) -> Array:
-        """Return the effect of controls at each node on the end, weighted by final costates (n,), shape (m, N + 1)."""
+        """Return the effect of controls at each node on the final states, weighted by final costates, (m, N + 1)."""
         return np.asarray((costate @ self.powers[::-1] @ self.motion.controls).T)
 
     def switching(self, costate: Array) -> tuple[Array, Array]:
@@ -103,7 +103,7 @@ class Reach:
 
     @cached_property
     def steps(self) -> tuple[Array, Array]:
-        """Effects of each step's controls on the given states, shape (F, m, N), and their values without control."""
+        """Effects of each step's controls on the given final states, (F, m, N), and these states without control."""
         motion, count, powers = self.motion, self.count, self.powers[:, self.rows]
         _, acting, drift = motion.step(self.duration / count)
         effects = (powers[count - 1 :: -1] @ acting).transpose(1, 2, 0)
@@ -129,7 +129,7 @@ class Reach:
 
     @cached_property
     def goal(self) -> Array:
-        """The given end, shape (F,)."""
+        """Given final states, shape (F,)."""
         return goal(self.instance, self.rows, self.instance.t0 + self.duration)
 
     def separation(self, tight: float = TIGHT) -> tuple[float, Array]:
@@ -148,7 +148,7 @@ class Reach:
 
     @cached_property
     def levels(self) -> Array:
-        """Lower bounds, values at rest and upper bounds in each step, shape (3, m N)."""
+        """Lower bounds, values at rest and upper bounds of the controls in each step, shape (3, m N)."""
         low, high = np.array(self.instance.lower), np.array(self.instance.upper)
         return np.repeat([low, np.clip(0.0, low, high), high], self.count, axis=1)
 

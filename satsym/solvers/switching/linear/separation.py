@@ -22,7 +22,7 @@ LONGEST_STEP = 1.0 / 64.0
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Largest motion of a linear system along costates in a given time, for any initial state and any bounds."""
+    """Bounds of the motion of a linear system along given costates, for any initial state and any control bounds."""
 
     costate: Array
     """Final costates, scaled to a largest magnitude of 1, shape (n,)."""
@@ -36,7 +36,7 @@ class Plane:
     """Integral of the effect of the uncontrolled motion along the costates, and of its magnitude."""
 
     def beyond(self, initial: Array, wanted: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
-        """Return for which starts, (n, M), no control within bounds, (m, M), reaches the end or beyond, shape (M,).
+        """Return from which initial states, (n, M), no control within bounds, (m, M), reaches the end, shape (M,).
 
         This proves that the end cannot be reached, as far as the integration is accurate.
 
