@@ -28,8 +28,8 @@ ROUNDS = 3
 """Maximum number of cheaper competitors that successively replace the solution."""
 
 SWITCHED = "bang-bang"
-"""Method whose saddle points are not left, like those with boundary arcs: the descents used here keep neither switching
-controls nor path constraints."""
+"""Method whose saddle points are not left by descent, as descents keep neither switching controls nor path constraints.
+The same holds for methods with boundary arcs."""
 
 SAMPLES = 401
 """Number of values in an initial guess."""

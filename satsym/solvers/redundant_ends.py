@@ -34,8 +34,8 @@ STEP = 1e-4
 """Variation of the controls, relative to their magnitude."""
 
 SEEN = 1e-5
-"""Minimum effect of a control variation on the end, relative to the states. If the effect is smaller, the variation is
-increased."""
+"""Minimum effect of a control variation on the final state, relative to the states. If the effect is smaller, the
+variation is increased."""
 
 OFF = (0.3, 0.7)
 """Range of the random distance of a free final state from the initial one, relative to the latter."""

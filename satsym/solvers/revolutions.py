@@ -94,7 +94,7 @@ def shifted(instance: Instance, turns: dict[str, int]) -> Instance:
 
 
 def as_stated(solution: Solution) -> Solution:
-    """Return a solution whose angles are reduced by the turns that make them end as stated."""
+    """Return a solution whose angles are reduced by whole turns, such that they end at the stated values."""
     instance, names = solution.instance, solution.instance.model.spec.state_names
     turns: dict[str, int] = {}
     for name in instance.solver.free_angles:

@@ -37,7 +37,7 @@ ROUNDING = 1e-12
 """Error estimate below which rounding prevents a further reduction."""
 
 STRAIGHT_THROUGH = 15
-"""Maximum number of steps from the straight line to a minimum; with more steps other starts are better."""
+"""Maximum number of steps from the straight line to a minimum. If more steps are needed, other starts are tried."""
 
 ROUGHLY, TOLERANCE = 3e-2, 1e-7
 """Sizes of the last step of the two stages of the minimisation: after the first stage a new mesh is used if the

@@ -29,7 +29,7 @@ class EndForm:
     """Rows of the linear constraints, shape (c, n + e), scaled to about 1: first fixed states, then terminal
     constraints."""
     sizes: Array
-    """Magnitudes by which these rows were divided, shape (c,)."""
+    """Magnitudes by which the rows of the constraints were divided, shape (c,)."""
 
 
 def final_values(solution: Solution) -> tuple[float, tuple[float, ...], tuple[float, ...]]:

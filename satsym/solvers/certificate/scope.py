@@ -47,8 +47,8 @@ THEOREMS = {
 matches a check of the certificate applies."""
 
 INSIDE, MET = 1e-6, 1e-9
-"""Minimum distance from its bounds, as a fraction of its range, of a control that maintains the final state; and the
-largest rate of the states under this control, relative, that counts as zero."""
+"""Minimum distance from its bounds, as a fraction of its range, of a control that maintains the final state. Largest
+rate of the states under this control that counts as zero, relative to its terms."""
 
 
 def with_scope(certificate: Certificate, solution: Solution) -> Certificate:

@@ -86,7 +86,7 @@ def examined(
 def _judged(
     solution: Solution, deadline: float, past: Past | None, compared: bool, free: tuple[Unknown, ...]
 ) -> tuple[Certificate, Solution | None]:
-    """Return the certificate from these kernels, without a test of their consistency, and the cheapest competitor.
+    """Return the certificate and the cheapest competitor, without a test whether the kernels are consistent.
 
     Parameters
     ----------

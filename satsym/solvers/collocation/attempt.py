@@ -38,7 +38,7 @@ class Attempt:
     curve: Curve
     """Curve at which the attempt ended."""
     reason: Reason
-    """Whether this curve is an extremal, or why not."""
+    """Reason why the attempt ended: the curve is an extremal, or why it is not."""
     iterations: int
     """Number of linear systems that were solved."""
     cost: float = float("nan")

@@ -53,7 +53,7 @@ tangential."""
 
 
 def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
-    """Continue the extremal without control bounds to the extremal with these bounds.
+    """Continue the extremal of a problem without control bounds to the extremal with its bounds.
 
     Parameters
     ----------

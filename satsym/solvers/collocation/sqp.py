@@ -231,7 +231,7 @@ def _convex(hessians: Array) -> Array:
 
 
 def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:
-    """Return whether an extremal is a minimum, and the linearised equations by which this is judged.
+    """Return whether an extremal is a minimum, and the linearised equations from which this follows.
 
     Parameters
     ----------

@@ -42,13 +42,13 @@ def order(instance: Instance, constraint: int) -> int:
 
 
 def analytic(instance: Instance, active: Active) -> bool:
-    """Return whether results for these active constraints are analytic, because no complex steps are used for them."""
+    """Return whether quantities under several active constraints are analytic, so that complex steps are possible."""
     orders = {order(instance, k) for k in active}
     return len(active) < 2 or len(orders) == 1
 
 
 def control(instance: Instance, active: Active, t: Array, z: Array) -> Array:
-    """Return controls, shape (m, N), that minimise H among those that keep active control constraints."""
+    """Return controls, shape (m, N), that minimise H among the controls that satisfy the active control constraints."""
     held = tuple(k for k in active if order(instance, k) == 0)
     if len(held) < 2:
         return one_by_one.control(instance, held[0] if held else one_by_one.NONE, t, z)

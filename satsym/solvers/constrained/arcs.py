@@ -69,7 +69,7 @@ def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
 
 
 def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array | None = None) -> Array:
-    """Return the multiplier eta of a constraint on its boundary, shape (N,), from the controls if these are known."""
+    """Return the multiplier eta of a constraint on its boundary, shape (N,)."""
     model, n = instance.model, len(instance.initial)
     if stationary(instance) and holds_control(instance, constraint):
         return by_newton(instance, (constraint,), t, z)[1][0]
@@ -127,7 +127,7 @@ def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 
 
 def conditions(instance: Instance) -> list[range]:
-    """Return the indices of the conditions at each waypoint, which follow those of the path constraints."""
+    """Return the indices of the conditions at each waypoint; they follow the indices of the path constraints."""
     spec = instance.model.spec
     ends = np.cumsum([len(spec.path_constraints), *(point.conditions for point in spec.interior)]).tolist()
     return [range(a, b) for a, b in pairwise(ends)]
@@ -216,7 +216,7 @@ class Arcs:
 
     @cached_property
     def places(self) -> list[int]:
-        """Positions in the vector at which each arc begins, and at which the last one ends."""
+        """Positions in the vector of unknowns at which each arc begins, and at which the last one ends."""
         sizes = [(k * (STAGES + 1) + 1) * 2 * self.n for k in self.intervals]
         return [0, *np.cumsum(sizes).tolist()]
 

@@ -75,7 +75,7 @@ def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[
 
 
 def _slopes(instance: Instance, active: Active, t: Array, z: Array, w: Array) -> Array:
-    """Return derivatives of the equations for controls and multipliers by these, shape (N, m + k, m + k)."""
+    """Return the Jacobian, shape (N, m + k, m + k), of the equations that determine controls and multipliers."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, count = z[:n], w[:m], len(t)
     found = np.zeros((len(w), len(w), count))

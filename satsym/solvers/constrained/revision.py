@@ -29,7 +29,7 @@ ROUNDED = 1e-11
 """Fraction of the duration by which coinciding junctions may be in the wrong order."""
 
 PARALLEL = 1.0 - 1e-6
-"""Squared cosine between the effects of two constraints on the controls above which these count as parallel."""
+"""Squared cosine between the effects of two constraints on the controls above which the effects count as parallel."""
 
 BESIDE = 0.05
 """Fraction of the duration around a touch point within which a violation turns it into an arc."""

@@ -80,8 +80,7 @@ class Junction:
     constraint: int
     time: float
     left: int | None
-    """Index of the contact that ends where this one begins, on a direct transition between boundaries; otherwise
-    ``None``."""
+    """Index of another contact that ends where this contact begins, otherwise ``None``."""
     before: Active
     after: Active
     jumps: tuple[tuple[int, float], ...]
@@ -145,20 +144,20 @@ class Structure:
         return sorted(found, key=lambda each: each[0])
 
     def _changing(self, time: float) -> tuple[set[int], set[int]]:
-        """Return the constraints whose contacts end at a waypoint, and those whose contacts begin there."""
+        """Return the constraints whose contacts end at a waypoint, and the constraints whose contacts begin there."""
         lasting = [one for one in self.contacts if not one.touches]
         ended, started = ({one.constraint for one in lasting if at(one) == time} for at in (_end, _start))
         return ended, started
 
     def joined(self, contact: int) -> bool:
-        """Return whether another contact begins where this one ends, on a direct transition between boundaries."""
+        """Return whether another contact begins where a given contact ends."""
         one = self.contacts[contact]
         if one.touches or any(each.time == one.end for each in self.passages):
             return False
         return any(each.start == one.end and not each.touches for each in self.contacts)
 
     def _followed(self, contact: int) -> int | None:
-        """Return the index of the contact that ends where this one begins, or ``None``."""
+        """Return the index of the contact that ends where a given contact begins, or ``None``."""
         start = self.contacts[contact].start
         places = (k for k, each in enumerate(self.contacts) if each.end == start and not each.touches)
         return next(places, None)

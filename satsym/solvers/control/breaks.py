@@ -27,7 +27,8 @@ def find_breaks(instance: Instance) -> Array:
     Returns
     -------
     Array
-        Shape (2, K): the last fractions before the breaks, and the first ones after them. Breaks at the ends are left out.
+        Shape (2, K): the last fractions before the breaks, and the first ones after them. Breaks at the ends are left
+        out.
     """
     if instance.model.spec.autonomous or instance.tf is None:
         return np.zeros((2, 0))

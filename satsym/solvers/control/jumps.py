@@ -21,7 +21,7 @@ HALVINGS = 48
 """Number of bisections of the time between two points, towards the larger change of the control."""
 
 MOVED = 1e-6
-"""Change of a control between two points, relative to the largest control, above which it may jump between them."""
+"""Change of a control between two times, relative to the largest control, above which it may jump in between."""
 
 WHOLE, FAINT_JUMP = 8, 0.1
 """Number of bisections during which the limit ``MOVED`` holds, and the fraction of a jump that has to remain

@@ -31,8 +31,8 @@ ITERATIONS, ASTRAY = 300, 50
 random final state. The latter need not lead to a solution, and is found soon or hardly ever."""
 
 WEAK, NEARLY_WITHIN = 7, 1.5
-"""Number of starts before those that ignore the bounds of controls; and the largest control of such a motion, relative
-to its bound, up to which a motion within the bounds is searched for from it."""
+"""``WEAK`` is the number of starts before those that ignore the bounds of controls. ``NEARLY_WITHIN`` is the largest
+control of a motion from such a start, relative to its bound, for which a motion within the bounds is searched for."""
 
 PRICED = 3
 """Maximum number of starts that are tried to find the cost of a given duration. If the final state can be reached in

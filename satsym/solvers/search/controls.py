@@ -238,7 +238,7 @@ def _drawn(instance: Instance) -> tuple[Array, Array, np.random.Generator]:
 
 
 def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
-    """Return whether rates are not linear in these controls, so that they depend on their norm."""
+    """Return whether rates are nonlinear in some controls, which means that rates depend on the norm of these."""
     t, x, _ = _drawn(instance)
     u = np.zeros((len(instance.model.spec.controls), DRAWN))
     with np.errstate(all="ignore"):

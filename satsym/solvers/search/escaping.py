@@ -27,12 +27,12 @@ INFINITE = 1e14
 """Magnitude of a state above which it counts as infinite."""
 
 HALVINGS, DECADES = 24, 4
-"""Number of bisections for the magnitude at which motions become infinite, and number of distances from it at which
-costs are compared, each a tenth of the previous one."""
+"""Number of bisections for the magnitude at which motions become infinite, and number of smaller magnitudes at which
+costs are compared, each ten times closer to it than the previous one."""
 
 TENFOLD, LAST = 10.0, 3
-"""Minimum factor by which the decrease of the cost grows from one of these distances to the next, and the number of the
-last distances for which this is required."""
+"""Minimum factor by which the decrease of the cost grows from one magnitude of the control to the next one that is ten
+times closer to the critical one, and number of the last magnitudes for which this is required."""
 
 TOLERANCE = 1e-9
 """Relative and absolute tolerance of the integration."""

@@ -33,7 +33,7 @@ Reason = tuple[Status, str]
 BETWEEN, FAINT_SLOPE, LASTING = 0.05, 1e-2, 0.35
 """Minimum distance of a norm from its bounds, as a fraction of its range, at which it counts as intermediate. Magnitude
 of its switching function, relative to the cost of the norm, below which the control is undetermined. Fraction of the
-duration for which this has to last."""
+duration for which one of both has to last."""
 
 LONGER, SHORTER = (4.0, 8.0, 16.0, 32.0), (0.25, 2.0**-4, 2.0**-6, 2.0**-8)
 FAR_LONGER = (128.0, 512.0, 2048.0)
@@ -173,7 +173,7 @@ class _Eased(Programme):
         self.held = np.arange(path.first, path.first + len(path.upper))
 
     def begun(self) -> Array:
-        """Return unknowns of the straight line to the final state, with the violation that this line needs."""
+        """Return unknowns of the straight line to the final state, with its violation of the path constraints."""
         w = starts.begun(self, starts.Plan())
         y, _, _ = self._local(np.append(w, 0.0))
         n, given = self.points.states, self.controls.given

@@ -40,7 +40,7 @@ class Programme(Transcription):
         return into, steps, places
 
     def _end_into(self, point: int) -> tuple[Array, Places]:
-        """Return derivatives of the local variables of one point by the unknowns, (l, z), and indices (z,) of these.
+        """Return derivatives of the local variables of one point by its unknowns, (l, z), and their indices (z,).
 
         Controls of the point are left out.
         """

@@ -30,7 +30,8 @@ EQUAL_RATE = 1e-9
 """Relative difference of a rate and a state below which they count as the same quantity."""
 
 FREELY, DRAWS, BENT = 1.0, 40, (0.0, 0.3, 1.0, 0.3)
-"""Standard deviation of random final states, in scales of the states, their number, and amplitudes of waves on paths."""
+"""Standard deviation of random final states, in scales of the states; number of starts with random final states;
+amplitudes of waves on their paths."""
 
 MORE, WIDER, LASTING = 24, (0.3, 1.0, 3.0), (2.0, 4.0, 1.0)
 """Number of further starts if the first ones lead to several costs or none, amplitudes of their waves, and their

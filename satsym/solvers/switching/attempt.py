@@ -171,7 +171,7 @@ def _residual(instance: Instance, found: Refined) -> float:
 
 
 def _own_sizes(instance: Instance, found: Refined) -> Array:
-    """Return scales of states from the values and rates at the ends of arcs; those of costates are unchanged."""
+    """Return scales of the states, from their values and rates at the ends of arcs, and the known costate scales."""
     n = len(instance.initial)
     states = np.maximum(given(instance), SIZED * found.sizes[:n])
     for arc in found.arcs:

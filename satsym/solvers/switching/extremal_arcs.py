@@ -195,7 +195,7 @@ def growth(field: Field, start: float, end: float, z: Array, sizes: Array) -> fl
 
 
 def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy) -> tuple[Array, Array]:
-    """Return states and costates at the end of a piece, and their derivatives by those at its start."""
+    """Return states and costates at the end of a piece, and their derivatives by states and costates at its start."""
     rows, sizes, tolerance = len(z), accuracy.sizes, accuracy.tolerance
     if abs(end - start) <= ROUNDING * max(abs(start), abs(end)):
         return z + (end - start) * np.array(field.rates(start, z.tolist())), np.eye(rows)

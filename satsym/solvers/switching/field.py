@@ -64,7 +64,7 @@ class Field:
         return self.saturated if self.singular is None else self._feedback(t, z)[0]
 
     def sides(self, t: float, z: list[float]) -> NDArray[np.bool_]:
-        """Return on which bounds the controls are that do not switch; rates have a corner where this changes."""
+        """Return at which bounds non-switching controls are; rates have a corner where this changes."""
         return np.zeros(0, bool)
 
     def rates(self, t: float, z: list[float]) -> list[float]:

@@ -50,7 +50,7 @@ class _LeastTime:
             self.linear[f"{name}_batch"] = self._alone_batch(name, place)
 
     def functions(self) -> dict[str, Function]:
-        """Return all functions of the model, with those that depend on a cost replaced."""
+        """Return all functions of the model, with the functions that depend on the cost replaced."""
         n, m = self.n, self.m
         return (
             self.whole

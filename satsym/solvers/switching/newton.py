@@ -162,7 +162,7 @@ class Equations:
         return residual / rows, together / rows[:, None]
 
     def _known(self, row: Array) -> Array:
-        """Return derivatives without those by a given final time."""
+        """Return derivatives without the column of a final time that is given."""
         place = len(self.instance.initial) + self.structure.switches
         return row if self.free_time else np.delete(row, place, axis=-1)
 
@@ -235,7 +235,7 @@ class Equations:
 
 @dataclass(frozen=True, eq=False)
 class _Switch:
-    """A switch of a control, and its derivatives by the unknowns."""
+    """A switch of a control: its time and values, and their derivatives by the unknowns."""
 
     field: Field
     t: float
@@ -336,7 +336,7 @@ def _least_squares(matrix: Array, right: Array) -> Array:
 
 
 def _resized(sizes: Array, arcs: list[Arc]) -> Array:
-    """Return scales with those of the costates updated from the arcs; those of the states are unchanged."""
+    """Return the scales of the states, and the scales of the costates updated from the arcs."""
     n = len(sizes) // 2
     seen = np.max([np.abs(arc.after[n:]) for arc in arcs] + [np.abs(arcs[0].before[n:])], axis=0)
     cost = float((sizes[:n] * seen).max())

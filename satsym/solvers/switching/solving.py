@@ -169,7 +169,7 @@ def _explained(instance: Instance, stopped: homotopy.Stopped, limits: Limits, se
 
 
 def _advised(instance: Instance, stopped: homotopy.Stopped) -> homotopy.Stopped:
-    """Return the failure with advice if magnitudes have a cost, since singular arcs are only found without them."""
+    """Return the failure with advice if |u| has a cost, since singular arcs are only found for problems without |u|."""
     if stopped.status is not Status.NOT_CONVERGED or any(moving(instance)) or not any(costs(instance)):
         return stopped
     advice = (

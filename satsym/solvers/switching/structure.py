@@ -49,7 +49,7 @@ class Event:
     control: int
     """Index of the control."""
     number: int
-    """Number of earlier switches of this control."""
+    """Number of earlier switches of the same control."""
     column: int
     """Position of the time among the switching times of all controls, one control after the other."""
 
@@ -72,7 +72,7 @@ class Structure:
 
     @property
     def jumps(self) -> list[tuple[int, int, int]]:
-        """Return the jumps of the costates, each by control, index of its switch, and constraint."""
+        """Return the jumps of the costates: control, index of its switch, and constraint that causes the jump."""
         return [
             (control, number, constraint_of(level))
             for control, row in enumerate(self.levels)

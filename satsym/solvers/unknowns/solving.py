@@ -29,7 +29,7 @@ from satsym.status import BadInput, Status
 from satsym.wording import counted
 
 ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
-"""Changes of each unknown, in units, that are tried in turn if the initial guess has no solution."""
+"""Changes of each free quantity, relative to its scale, that are tried in turn if the initial guess has no solution."""
 
 EQUAL_COST = 1e-9
 """Relative difference of costs that is within their error: a choice that is cheaper by less is no better."""
@@ -48,16 +48,16 @@ ITERATIONS, POLISHING, DEPARTURES = 60, 4, 3
 """Maximum numbers of steps of the trust-region method, of final Newton steps, and of saddle points that are left."""
 
 FIRST = 0.05
-"""First change of each unknown, in units, which shows how strongly the cost depends on it."""
+"""First change of each free quantity, relative to its scale, which shows how strongly the cost depends on it."""
 
 NEAR_UNITS = 1e-3
-"""Changes of the unknowns, in units, from which the curvature is measured."""
+"""Change of each free quantity, relative to its scale, in the finite differences for the curvature."""
 
 FAR_UNITS = 1e5
-"""Change of an unknown, in units, beyond which a cost that still falls counts as unbounded below."""
+"""Change of a free quantity, relative to its scale, beyond which a cost that still falls counts as unbounded below."""
 
 SMALLEST_RADIUS = 1e-10
-"""Radius of the trust region, in units, below which the iteration ends."""
+"""Radius of the trust region, relative to the scales of the free quantities, below which the iteration ends."""
 
 IDLE = 1e-9
 """Relative derivative and change of the cost below which the cost does not depend on an unknown."""
@@ -160,7 +160,7 @@ def _unanswered(trials: Trials, status: Status, message: str) -> Solution:
 
 
 def _reaching(trials: Trials) -> Array | None:
-    """Return a choice, in units, for which the end can be reached; ``None`` if none is found or no end is given."""
+    """Return scaled values of the free quantities for which the end can be reached; ``None`` if none are found."""
     instance = trials.instance
     if not instance.final or any(isinstance(value, str) for value in instance.final.values()):
         return None

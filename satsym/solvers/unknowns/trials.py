@@ -23,13 +23,13 @@ Solver = Callable[[Instance, Progress | None], Solution]
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """Solution for one choice of the free quantities."""
+    """Solution for one choice of the free initial values and parameters."""
 
     at: Array
-    """Change of the free quantities from their initial guess, in units."""
+    """Change of the free quantities from their initial guess, relative to their scales."""
     solution: Solution
     slope: Array
-    """Derivatives of the minimum cost with respect to the free quantities, per unit."""
+    """Derivatives of the minimum cost with respect to the scaled free quantities."""
     residual: float
     """Largest relative derivative of the minimum cost."""
 
@@ -64,11 +64,11 @@ class Trials:
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """Return the free quantities."""
+        """Return the free initial values and parameters."""
         return self.instance.free
 
     def chosen(self, at: Array) -> Instance | None:
-        """Return the instance with the chosen values; ``None`` if they are not admissible."""
+        """Return the instance with the free quantities set to chosen values; ``None`` if these are not admissible."""
         found = self.instance
         for unknown, unit, step in zip(self.unknowns, self.unit, at, strict=True):
             value = unknown.of(self.instance) + float(unit * step)
@@ -81,7 +81,7 @@ class Trials:
         return replace(begun, free=())
 
     def __call__(self, at: Array) -> Trial | None:
-        """Return the trial at a choice; ``None`` if the problem has no solution there."""
+        """Return the trial for chosen values of the free quantities; ``None`` if the problem has no solution there."""
         chosen = self.chosen(at)
         if chosen is None:
             return None
@@ -101,7 +101,7 @@ class Trials:
         return Trial(at, found, values, max(one.relative for one in slopes))
 
     def values(self, at: Array) -> str:
-        """Return the chosen values as text."""
+        """Return chosen values of the free quantities as text."""
         chosen = zip(self.unknowns, self.unit, at, strict=True)
         return ", ".join(f"{u.name} = {u.of(self.instance) + float(unit * step):.10g}" for u, unit, step in chosen)
 

@@ -31,7 +31,7 @@ class Simulations:
     rows: NDArray[np.intp]
     """Indices of the boundary residuals that constrain the final state."""
     scale: Array
-    """Typical magnitudes of these residuals."""
+    """Typical magnitudes of the boundary residuals that constrain the final state."""
     steps: int
     """Number of steps of each simulation."""
     end: float

@@ -46,8 +46,8 @@ CURVED = 1e-7
 condition counts as violated."""
 
 STRICT, BESIDE = 1e-6, 1e-6
-"""Minimum multiplier that counts as strictly positive, relative to the largest; and the fraction of an arc beside its
-entry and exit within which this is not tested."""
+"""``STRICT`` is the smallest multiplier that counts as strictly positive, relative to the largest. ``BESIDE`` is the
+fraction of an arc next to its entry and exit that is left out of this test."""
 
 
 def certify(
@@ -314,7 +314,7 @@ def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[
 
 
 def _drift(solution: Solution, again: Replay) -> float | None:
-    """Return the largest change of H along the flow, relative to its terms; ``None`` if time is explicit."""
+    """Return the largest change of H along the flow, relative to its terms; ``None`` if the problem depends on time."""
     instance, n, t = solution.instance, len(solution.x), solution.times
     parts = [control(instance, one.active, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
     u, flow = np.concatenate(parts, axis=1), Flow(t, again.z[:n], again.z[n:], again.cost)

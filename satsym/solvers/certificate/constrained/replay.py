@@ -44,7 +44,7 @@ class Piece:
     nodes: slice
     """Indices of the solution's nodes on the arc."""
     z: Array
-    """States and costates at these nodes, shape (2n, N)."""
+    """States and costates at the solution's nodes on the arc, shape (2n, N)."""
     times: Array
     dense: Array
     """Times at and between the nodes, shape (M,), and states and costates there, shape (2n, M)."""

@@ -29,7 +29,8 @@ TURN = np.pi / 2.0
 less than pi, so that the values at both ends determine the change."""
 
 FRACTION = 0.75
-"""Change of the phases between the beginnings of segments, as a fraction of the largest change within a step."""
+"""Change of the sum of eigenphases in a segment, as a fraction of the largest change allowed in a step, by which
+segments are laid out."""
 
 COLUMNS, ACCURATE = (3, 5), 3e-7
 """Numbers of columns of the extrapolation table for transition matrices: the smaller number if its difference from the

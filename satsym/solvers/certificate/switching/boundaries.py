@@ -28,7 +28,7 @@ def on_boundary(again: Replay) -> bool:
 
 
 def still(again: Replay) -> bool:
-    """Return whether the boundaries do not depend on time explicitly, so that H is constant along them."""
+    """Return whether the active path constraints do not depend on time explicitly, so that H is constant."""
     fields = ((piece.field, piece.end, piece.after.tolist()) for piece in again.pieces)
     return not any(
         isinstance(one, BoundaryField) and off_boundary(one.instance, one.constraint, t, z)[2] for one, t, z in fields
@@ -62,7 +62,7 @@ def _off(again: Replay, room: Array) -> float:
 
 
 def _jumps(again: Replay) -> list[tuple[float, float]]:
-    """Return multipliers at the ends of boundary arcs, and jumps beyond those they explain, both relative."""
+    """Return multipliers at the ends of boundary arcs, and the part of jumps that multipliers do not explain."""
     found = []
     for before, after in pairwise(again.pieces):
         for field in (before.field, after.field):

@@ -238,7 +238,7 @@ def _excess_by_law(solution: Solution) -> float:
 
 
 def _terms(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> float:
-    """Return the largest sum of the magnitudes of the terms of H without the running cost."""
+    """Return the largest sum of magnitudes of costates times rates along the solution, a scale of H."""
     rates = instance.model.dynamics_batch(t, x, u, instance.parameters)
     return float(np.abs(lam * rates).sum(axis=0).max())
 

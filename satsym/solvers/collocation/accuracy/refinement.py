@@ -59,8 +59,7 @@ ROUNDED_ERROR = 1e-14
 """Error estimate of a solution whose Newton corrections have reached rounding."""
 
 FAINT_COSTATE = 1e-5
-"""Effect of costates on the states, relative to these, below which rounding makes the costates less accurate than
-others."""
+"""Effect of costates on the states, relative to the states, below which rounding makes costates less accurate."""
 
 LITTLE = 1e-2
 """Magnitude of scaled costates above which all are equally accurate."""

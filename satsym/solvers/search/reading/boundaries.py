@@ -45,7 +45,7 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 
 
 def _without_contacts(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
-    """Return the extremal of the problem without path constraints if it satisfies these, otherwise ``None``."""
+    """Return the extremal of the problem without path constraints if it satisfies them all, otherwise ``None``."""
     at_rest = levels.exact if instance.model.spec.switching else None
     found = at_rest(instance, at, limits) if at_rest else collocated.exact(instance, at)
     if found is None or violation(found) > SLACK:

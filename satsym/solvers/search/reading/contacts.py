@@ -28,7 +28,7 @@ SMALL_SLACK = 1e-2
 """Minimum scale of the slacks of a constraint, relative to its terms, used if all slacks are smaller."""
 
 NOTHING = 1e-6
-"""Contribution of a constraint to the costates, relative to these, below which it is ignored."""
+"""Contribution of a constraint to the costates, relative to their magnitude, below which it is ignored."""
 
 ON_BOUNDARY = 1e-9
 """Largest distance from the boundary, relative to the constraint's magnitude, at which a motion counts as starting on
@@ -38,7 +38,7 @@ INSTANT = 2
 """Maximum number of steps between points over which the multiplier of a touch point is spread."""
 
 PARALLEL = 1.0 - 1e-6
-"""Squared cosine between the effects of two constraints on the controls above which these count as parallel."""
+"""Squared cosine between the effects of two constraints on the controls above which the effects count as parallel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ class Along:
 
     @cached_property
     def rooms(self) -> Array:
-        """Scale of each constraint, shape (h,): its largest slack or, if larger, the largest sum of its terms."""
+        """Scale of each constraint, shape (h,): the largest slack or, if that is larger, the largest sum of terms."""
         by_x, by_u = self.slopes
         terms = (np.abs(by_x) * np.abs(self.at.x[:, 1:])).sum(axis=1) + (np.abs(by_u) * np.abs(self.at.u)).sum(axis=1)
         found = np.maximum(self.slacks, terms).max(axis=1)

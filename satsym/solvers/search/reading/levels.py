@@ -200,7 +200,7 @@ def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
 
 
 def _concentrated(first: Guess, times: Array, filled: Array) -> Array:
-    """Return switching times of arcs at upper bounds that concentrate controls which are spread over a longer time."""
+    """Return switching times for arcs at upper bounds into which controls are concentrated, with the same integral."""
     rows = zip(first.structure.levels, first.structure.by_control(first.times), filled, strict=True)
     return np.concatenate([_lasting(times, *row) for row in rows])
 

@@ -56,7 +56,7 @@ def limits_met(instance: Instance, at: Motion) -> dict[str, Side]:
 
 
 def guessed_end(instance: Instance, at: Motion) -> Instance:
-    """Return the instance with the final time of a motion as initial guess, near which end limits are active."""
+    """Return the instance with a motion's final time as its initial guess of a free final time."""
     return instance if instance.tf is not None else replace(instance, tf_guess=float(at.times[-1]))
 
 

@@ -22,13 +22,13 @@ LATER = 1e-2
 """Relative delay of an exact arrival after the lower bound up to which it counts as the first."""
 
 STEP, MOST_DURATIONS = 1.1, 120
-"""Ratio of successive durations that are compared, and maximum number of them."""
+"""Ratio of successive durations at which costs are compared, and maximum number of such durations."""
 
 TRIED = 4
 """Maximum number of local minima of the cost over the duration that are tried, the cheapest first."""
 
 HALVINGS = 12
-"""Number of bisections between two durations that refine the cheapest one."""
+"""Number of bisections between two durations, to find the one for which H vanishes at the final time."""
 
 FINER = (1, 5)
 """Factors of the number of steps with which a structure is looked for, one after the other."""
@@ -50,7 +50,7 @@ hyperplane's direction is the square root of it."""
 
 BEYOND_ARRIVAL, FARTHER, TIRED = 1e-3, 1.5, 16
 """First fraction of an arrival time by which the search goes beyond it if no exact arcs are found; factor by which this
-fraction grows each time; maximum number of times."""
+fraction grows at each repetition; maximum number of repetitions."""
 
 UNDECIDED = 2e-3
 """Deviation of a switching function from its switching value, relative to its magnitude, below which the control counts

@@ -254,11 +254,11 @@ class Near:
     """A point of a convex set that is approximately nearest to the origin."""
 
     point: Array
-    """Point of the set, shape (d,), which also is the direction of a hyperplane that separates the set from the
-    origin."""
+    """Point of the set, shape (d,). It is also the direction of a hyperplane that separates the set from the origin, if
+    one is known."""
     distance: float
-    """Distance of this hyperplane from the origin, a lower bound of the set's distance; not positive if none
-    separates."""
+    """Distance of the separating hyperplane from the origin, a lower bound of the set's distance; not positive if no
+    hyperplane separates them."""
     corners: Array
     fractions: Array
     """Support points, shape (k, d), and weights with which the point is their mean."""
