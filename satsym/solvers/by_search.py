@@ -139,7 +139,7 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None) 
 
 
 def instead(instance: Instance, progress: Progress | None, certified: bool) -> Solution | None:
-    """Return the answer of a search, or a cheaper one from its certificate; ``None`` if none is found or it fails.
+    """Return the answer of a direct search, or a cheaper one from its certificate; ``None`` without an answer.
 
     Parameters
     ----------

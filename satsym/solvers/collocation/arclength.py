@@ -93,7 +93,7 @@ class Point:
 
     @cached_property
     def problem(self) -> TwoPoint:
-        """Return the problem at the point."""
+        """Return the two-point problem at the fraction of the path that the point has."""
         return self.at(self.fraction)
 
     @cached_property

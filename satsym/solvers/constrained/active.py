@@ -243,7 +243,7 @@ class Together:
 
     @cached_property
     def _of_second_order(self) -> Array:
-        """Multipliers of constraints of order two, which keep the quantities of ``_next`` constant."""
+        """Multipliers of constraints of order two, which keep the third time derivatives of these constant."""
         if not (which := self._of_order(2)):
             return np.zeros((0, len(self.t)))
 

@@ -323,6 +323,6 @@ class Rest:
         return self.nu + self.constraints + self.pressed
 
     def bounds(self, arc: int, count: int) -> tuple[int | None, int | None]:
-        """Return positions of the begin and end times of an arc, by the number of arcs; ``None`` for given times."""
+        """Return where the begin and end times of an arc are among the unknowns; ``None`` for times that are given."""
         first = None if arc == 0 else self.times + arc - 1
         return first, self.end if arc == count - 1 else self.times + arc

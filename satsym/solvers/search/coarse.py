@@ -62,7 +62,7 @@ def started(
     weak: bool = False,
     first: int = 0,
 ) -> Iterator[tuple[Plan, Found]]:
-    """Yield plans and the solutions they lead to on a coarse mesh, even unless a known motion grades it.
+    """Yield plans of starts, and the solutions that they lead to on a coarse mesh; a known motion may grade the mesh.
 
     Parameters
     ----------

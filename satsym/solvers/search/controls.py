@@ -19,7 +19,7 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 DRAWN, EQUAL_RATES = 6, 1e-9
-"""Number of random controls at which rates from nodes are compared with exact rates, and the largest relative
+"""Number of random controls at which weighted sums of rates are compared with exact rates, and the largest relative
 difference that counts as rounding."""
 
 Node = tuple[float, ...]
@@ -251,7 +251,7 @@ def _depends_on_norms(instance: Instance, places: tuple[int, ...]) -> bool:
 
 
 def _reproduces(instance: Instance, controls: Controls) -> bool:
-    """Return whether the weighted sum of rates at nodes reproduces the rates of the model."""
+    """Return whether a weighted sum of rates at a few controls reproduces the rates of the model."""
     t, x, rng = _drawn(instance)
     u = rng.uniform(-1.0, 1.0, (controls.given, DRAWN))
     low, high = controls.lower[: controls.given, None], controls.upper[: controls.given, None]

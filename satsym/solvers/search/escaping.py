@@ -65,7 +65,10 @@ def _admissible(instance: Instance) -> bool:
 
 
 def _likely(instance: Instance) -> list[tuple[Array, float, float]]:
-    """Return directions of constant controls with the last finite and the first infinite magnitude of each."""
+    """Return directions of constant controls, and the magnitudes between which motions become infinite.
+
+    Each direction has two magnitudes: the last of ``SIZES`` with a finite motion, and the next one.
+    """
     m = len(instance.model.spec.controls)
     drawn = np.random.default_rng(0).normal(size=(DRAWN, m))
     directions = np.concatenate([drawn / np.linalg.norm(drawn, axis=1)[:, None], np.eye(m), -np.eye(m)])
@@ -82,7 +85,10 @@ def _likely(instance: Instance) -> list[tuple[Array, float, float]]:
 def _along(
     instance: Instance, direction: Array, finite: float, infinite: float
 ) -> tuple[list[float], list[float]] | None:
-    """Return magnitudes of a control and costs that fall without limit near the critical one, otherwise ``None``."""
+    """Return magnitudes of a control and their costs if these fall without limit, otherwise ``None``.
+
+    The magnitudes approach the critical one, at which the motion becomes infinite within its time.
+    """
     low, high, still = finite, infinite, _cost(instance, finite * direction)
     if np.isnan(still) or not np.isnan(_cost(instance, infinite * direction)):
         return None

@@ -21,7 +21,8 @@ from satsym.solvers.switching.magnitudes import effective
 from satsym.solvers.switching.structure import BOUNDARY
 
 NOTHING = 1e-300
-"""Level in place of zero, since a level must not be equal to the deciding margin, which is zero at a switch."""
+"""Tiny level of a norm in place of zero: levels must differ from the margin that decides them, which is zero at a
+switch."""
 
 ON_BOUND = 1e-12
 """Distance from a bound below which a control counts as being at the bound."""

@@ -149,7 +149,7 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
 
 
 def deciding(instance: Instance, sizes: Array) -> Array:
-    """Return the switching-function values with which each control would affect H as much as any, shape (m,).
+    """Return the values of switching functions at which all controls affect H as much as the strongest, (m,).
 
     Parameters
     ----------

@@ -32,14 +32,15 @@ ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
 """Changes of each free quantity, relative to its scale, that are tried in turn if the initial guess has no solution."""
 
 EQUAL_COST = 1e-9
-"""Relative difference of costs that is within their error: a choice that is cheaper by less is no better."""
+"""Relative difference of costs that is within their error. Values of the free quantities that save less are no
+better."""
 
 SLACK = 0.7
-"""Factor by which the ranges of controls are reduced in the search for a first choice. A choice that needs the full
-range may have no solutions nearby."""
+"""Factor by which the ranges of controls are reduced in the search for first values of the free quantities. Values that
+need the full ranges may have no solutions nearby."""
 
 WORK = 400_000
-"""Maximum work of the searches for a first choice of the free quantities, in unknowns times iterations."""
+"""Maximum work of the searches for first values of the free quantities, in unknowns times iterations."""
 
 SETTLED_SLOPE = 1e-11
 """Relative derivative of the minimum cost at which the iteration has converged."""

@@ -66,7 +66,7 @@ def jump(solution: Solution, time: float) -> Array:
 
 
 def decided_by_none(solution: Solution, control: int) -> bool:
-    """Return whether no sign shows where a control switches, although none of its arcs is singular."""
+    """Return whether a switching function vanishes too often to show where a control without singular arcs switches."""
     low, high = solution.instance.control_set.switching
     if low[control] == high[control]:
         return False

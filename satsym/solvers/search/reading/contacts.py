@@ -125,14 +125,14 @@ def _passages(at: Motion) -> tuple[Passage, ...]:
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return flags with isolated gaps closed."""
+    """Return flags of points, also set where both neighbouring points are flagged."""
     found = flags.copy()
     found[1:-1] |= flags[:-2] & flags[2:]
     return found
 
 
 def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the first and last flagged point in each run of points that are near the boundary."""
+    """Return the first and last flagged point of each run of points that are near the boundary of a constraint."""
     inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
     return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 

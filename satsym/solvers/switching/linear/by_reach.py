@@ -41,8 +41,8 @@ HORIZON = 2**17
 assumed to do so for ever."""
 
 BEFORE = (3e-3, 3e-4, 3e-2)
-"""Fractions of the minimum time before it at which its costates are looked for, since at the minimum time itself the
-distance from the reachable set vanishes."""
+"""Fractions of the minimum time by which durations are shorter than it, to find its final costates. At the minimum time
+itself the distance from the reachable set vanishes, so that it does not show the costates."""
 
 PRECISE = 1e-8
 """Relative error of the distance between the separating hyperplane and the reachable set. The relative error of the
