@@ -75,7 +75,7 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Beside:
-    """Another motion that is approximately an extremal."""
+    """A motion other than the known extremal that is approximately an extremal."""
 
     duration: float
     z: Array

@@ -202,7 +202,7 @@ class Quadratic:
     form: Array
     """Matrix of the form, shape (P, P), in units of the cost."""
     lengths: int
-    """Number of changes of arc lengths among the arguments."""
+    """Number of changes of arc lengths, which are the first arguments of the form."""
     ties: Array
     """Rows of the linear constraints that keep the end conditions and the entries of boundary arcs, shape (c, P)."""
     free_time: bool

@@ -23,11 +23,11 @@ from satsym.solvers.control.corners import BEYOND_ZERO, LAST_DIGITS, beyond, enc
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
-"""First step of the bounds, relative to the largest violation."""
+"""First step by which bounds are tightened, relative to the largest violation."""
 
 FASTER = 1.7
 QUICK = 6
-"""``QUICK`` is the number of Newton corrections up to which the next step of the bounds is longer by the factor
+"""``QUICK`` is the number of Newton corrections up to which the next step that tightens bounds is longer by the factor
 ``FASTER``."""
 
 SHORTEST = 1e-4
@@ -176,7 +176,7 @@ def misplaced(problem: TwoPoint, curve: Path, met: Array) -> float:
 
 
 def apart(problem: TwoPoint, curve: Path, rates: Array, late: Array) -> float:
-    """Return the effect of a difference of rates (2n, M) over short times (M,), relative to a curve."""
+    """Return the relative change of a curve if its rates differ by given amounts (2n, M) for short times (M,)."""
     size = np.abs(curve.nodes).reshape(2, -1).max(axis=1)
     jump = np.abs(rates).reshape(2, problem.states, -1).max(axis=1) / np.maximum(size, (1.0, SMALL_COSTATE))[:, None]
     return float((jump.max(axis=0) * np.abs(late)).max()) * problem.elapsed(curve.theta) / 2.0

@@ -129,7 +129,7 @@ def linearise(
 
 @lru_cache
 def _by_nodes(count: int, stages: int, n: int, extra: int) -> Array:
-    """Return right-hand sides of the stages for the interval's beginning, with space for residual and unknowns."""
+    """Return right-hand sides that give derivatives of the stages by their interval's beginning; the rest is zero."""
     right = np.zeros((count, n + 1 + extra, stages, n))
     right[:, np.arange(n), :, np.arange(n)] = 1.0
     return right.reshape(count, n + 1 + extra, stages * n)

@@ -88,12 +88,12 @@ class TwoPoint:
 
     @cached_property
     def unknowns(self) -> int:
-        """Length of ``theta``."""
+        """Number of extra unknowns."""
         return len(self.instance.model.spec.multipliers) + self.free_time
 
     @cached_property
     def theta(self) -> Array:
-        """Initial guess of ``theta``: zero multipliers, and the guess of the duration."""
+        """Initial guess of the extra unknowns: zero multipliers, and the guess of the duration."""
         start = np.zeros(self.unknowns)
         if self.free_time:
             start[-1] = self.duration
@@ -133,7 +133,11 @@ class TwoPoint:
         return self._of(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
 
     def rates_beyond(self, tau: Array, z: Array, theta: Array) -> Array:
-        """Return the rates without control bounds, by one Newton step beyond the bounds if H may have no minimum."""
+        """Return the rates without control bounds.
+
+        If the model has no closed control law, H may have no minimum then: controls are one Newton step beyond the
+        bounds.
+        """
         model = self.instance.model
         if not model.spec.stationary:
             return self.relaxed(float("inf")).rates(tau, z, theta)

@@ -229,7 +229,10 @@ def _derivatives(
 
 
 def _slopes(function: Callable[[NDArray[Any]], NDArray[Any]], at: Array, exact: bool) -> Array:
-    """Return derivatives with respect to each component, (rows, d, N), by complex steps or central differences."""
+    """Return derivatives of a function by each component of its argument, (rows, d, N).
+
+    They are complex steps if the function allows these, otherwise central differences.
+    """
     columns = []
     for j in range(len(at)):
         unit = np.zeros((len(at), 1))

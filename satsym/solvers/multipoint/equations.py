@@ -89,7 +89,7 @@ class Problem:
 
     @property
     def layout(self) -> Layout:
-        """Return the positions of the unknowns."""
+        """Return the positions of the unknowns in the vector of all unknowns."""
         arcs = np.cumsum([0] + [(k * (STAGES + 1) + 1) * 2 * self.n for k in self.intervals])
         junctions = int(arcs[-1])
         end = junctions + len(self.junctions)

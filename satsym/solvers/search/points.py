@@ -116,7 +116,10 @@ class Points:
         return np.imag(found).reshape(len(found), len(by), y.shape[1]) / STEP
 
     def _by_states(self, y: Array, mu: Array, weight: Array) -> Array:
-        """Return derivatives (n, M) of mu f + weight L by the states; M may be a multiple of the columns of mu."""
+        """Return derivatives (n, M) of mu f + weight L by the states.
+
+        Weights for fewer than M points are repeated.
+        """
         x, v, t, p = self._parted(y)
         times = y.shape[1] // mu.shape[1]
         lam, weight = np.tile(mu, (1, times)), np.tile(weight, times)

@@ -138,7 +138,7 @@ def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, t
 
 
 def _slopes(function: Callable[[Any], NDArray[Any]], at: Array) -> Array:
-    """Return derivatives of a function with respect to every component, shape (rows, d, N), by complex steps."""
+    """Return derivatives of a function by every component of its argument, shape (rows, d, N), by complex steps."""
     columns = []
     for j in range(len(at)):
         moved = at.astype(complex)

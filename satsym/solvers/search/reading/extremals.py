@@ -223,7 +223,7 @@ class _Corner(Junction):
 
 @dataclass(frozen=True, eq=False)
 class _Read:
-    """Corners along a motion in order of time: their times, and the indices of their junctions in the list of all."""
+    """Corners along a motion in order of time: their times, and which junctions of a list they are."""
 
     times: Array
     which: tuple[int, ...]

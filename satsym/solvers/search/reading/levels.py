@@ -183,7 +183,7 @@ def _paused(first: Guess, seen: Sample) -> Guess:
 
 
 def _threshold(times: Array, sigma: Array, filled: Array) -> Array:
-    """Return thresholds of switching functions for which arcs at upper bounds last as long as in total, shape (r, 1).
+    """Return thresholds for switching functions such that arcs at upper bounds last as long as a given total, (r, 1).
 
     The total is the time integral of the controls of a programme as fractions of their ranges. The threshold is zero if
     controls are at their bounds. If other controls cost nearly the same, the controls of the programme are spread over
