@@ -115,7 +115,7 @@ def _frames(transition: Array) -> Array:
 
 
 def _orthonormal(frame: Array) -> Array:
-    """Return an orthonormal basis of the same plane, by the LAPACK routines of :func:`numpy.linalg.qr`."""
+    """Return an orthonormal basis of the plane of a given one, by the LAPACK routines of :func:`numpy.linalg.qr`."""
     reflectors, factors, _, _ = lapack().dgeqrf(frame)
     found: Array = lapack().dorgqr(reflectors, factors, overwrite_a=True)[0]
     return found

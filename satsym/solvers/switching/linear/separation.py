@@ -56,7 +56,7 @@ class Plane:
 
 
 def plane(instance: Instance, costate: Array) -> Plane | None:
-    """Return the plane of costates at the given final time, shape (n,); ``None`` if the integration fails.
+    """Return the plane whose normal is the given final costates, shape (n,); ``None`` if the integration fails.
 
     The motion must be linear. The adjoint equation is integrated backwards, together with the effect of the controls.
     """
