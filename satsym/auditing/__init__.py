@@ -1,4 +1,4 @@
-"""The audit: what documents print, held against what is derived, row by row."""
+"""The audit: each claim (row) that a document makes is compared with what is derived and receives a verdict."""
 
 from satsym.auditing.judged import VERDICTS, Judged
 from satsym.auditing.ledger.contents import Ledger

@@ -1,8 +1,9 @@
-"""Verdicts kept between runs: nothing is judged twice as long as nothing that it depends on has changed.
+"""Verdicts kept between runs: a document is judged anew only if something that its verdicts depend on has changed.
 
-The key is a digest of the ledger, of the derivations, kernels and instances, and of the modules of satsym that judging
-imports: how verdicts are drawn and printed is none of them. What is found is only ever
-compared and read as data; a file that is damaged or of another kind is ignored and written anew.
+The key of an entry is a digest of the ledger (the file that lists the claims of the document), of the derivations,
+kernels and instances, and of the modules of satsym that are imported for judging. Modules that only print or draw
+verdicts are not part of the key. An entry is only ever compared and read as data; a file that is damaged or of another
+kind is ignored and replaced.
 """
 
 from __future__ import annotations
@@ -29,17 +30,20 @@ from satsym.records import shelf
 
 _JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
 _READ = (("satsym.generated", "*.json"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
-"""What judging takes from beside the modules it imports, by package and pattern."""
+"""Files that verdicts depend on besides the imported modules, as pairs (package, file pattern)."""
 
 _DERIVING = 30
-"""How many rows are judged, about, while a derivation is derived."""
+"""Approximate number of rows that are judged in the time that one derivation takes."""
 _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
 
 
 def audit(
     ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], None] = lambda _: None, *, fresh: bool = False
 ) -> list[Judged]:
-    """As :func:`satsym.auditing.run.audit`, from the cache unless it is to be fresh; single items are never kept."""
+    """Return the verdicts of a ledger, from the cache unless `fresh` is true; audits of single items are never cached.
+
+    See :func:`satsym.auditing.run.audit` for the arguments.
+    """
     if items:
         return judge(ledger, items, announce)
     place = _place(ledger)  # of the files as they are now: they may change while it is judged
@@ -58,9 +62,10 @@ def audit_all(
     *,
     fresh: bool = False,
 ) -> dict[str, list[Judged]]:
-    """As :func:`audit`, of several documents by key; those that are not kept in a process for each processor.
+    """Return the verdicts of several ledgers by the key of the document.
 
-    It is announced which documents are not ready yet.
+    Documents without an entry in the cache are judged in parallel processes, one for each processor. `announce`
+    receives the keys of the documents that are not ready yet.
     """
     found = {} if fresh or items else {x.document.key: rows for x in ledgers if (rows := _read(_place(x))) is not None}
     left = sorted((x for x in ledgers if x.document.key not in found), key=_work, reverse=True)
@@ -82,7 +87,7 @@ def audit_all(
 
 
 def _work(ledger: Ledger) -> int:
-    """About how much there is to do, in rows: what takes longest is begun first."""
+    """Estimate the work of judging a ledger, in rows; the ledger with the most work is begun first."""
     return len(ledger.rows) + _DERIVING * len(ledger.models)
 
 
@@ -109,7 +114,7 @@ def _digest(ledger: Ledger) -> str:
 
 @cache
 def program(modules: tuple[str, ...] = _JUDGING) -> str:
-    """A digest of everything that verdicts, or what some modules find, depend on beside the ledger."""
+    """Return a digest of everything except the ledger that results of some modules (default: verdicts) depend on."""
     digest = hashlib.blake2b(digest_size=16)
     digest.update(sys.version.encode())
     for library in _LIBRARIES:

@@ -1,7 +1,7 @@
-"""Findings: rows that go wrong for one reason, together with what they spoil, and how much depends on them.
+"""Findings of an audit: faulty rows (claims of a document) grouped by their common cause, ordered by importance.
 
-Two rows have one cause where the same edit puts both right, or where claims of one form fail in one way. A row that
-follows from what is wrong is a consequence and no slip of its own: it is counted with what spoils it.
+Two rows have one cause if the same edit corrects both, or if claims of one form fail in the same way. A row that
+follows from a faulty row is a consequence, not an error of its own, and is counted with the row that it follows from.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from enum import Enum
 from satsym.auditing.judged import Judged
 
 SILENT = ("confirmed", "illegible", "undecided")
-"""Verdicts that find no fault."""
+"""Verdicts that report no fault."""
 _FALSE = ("wrong", "artefact", "unit error")
 _MILD = {"imprecise", "notation"}
 
 
 class Weight(str, Enum):
-    """How much depends on a finding, the most first."""
+    """Importance of a finding, by what depends on it, in decreasing order."""
 
     OVERTURNS = "overturns a conclusion"
     RESULT = "wrong result"
@@ -30,37 +30,37 @@ class Weight(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One cause."""
+    """Rows of a document that are faulty for one common cause."""
 
     document: str
     """Key of the document."""
     cause: str
-    """Key of the row where it shows first; rows of this cause name it."""
+    """Key of the first row that shows the fault; the rows of the finding refer to this key."""
     weight: Weight
-    """How much depends on it."""
+    """Importance of the finding."""
     places: tuple[Judged, ...]
-    """Rows that have the fault themselves, the first first."""
+    """Rows that contain the fault themselves, in the order of the document."""
     spoiled: tuple[Judged, ...]
-    """Rows that are wrong because they follow from those."""
+    """Rows that are wrong only because they follow from a row that contains the fault."""
 
     @property
     def statement(self) -> str:
-        """What is wrong, of the first place."""
+        """Explanation of the fault in the first row that contains it."""
         return next((row.why for row in self.places if row.why), self.places[0].diagnosis)
 
     @property
     def correction(self) -> str:
-        """What is right there; empty where that is no formula or value."""
+        """Correct formula or value for the first row that contains the fault; empty if the correction is neither."""
         return self.places[0].derived
 
     @property
     def overturned(self) -> tuple[Judged, ...]:
-        """Conclusions that fall with it."""
+        """Conclusions of the document that are false because of this fault."""
         return tuple(row for row in (*self.places, *self.spoiled) if _falls(row))
 
 
 def findings(rows: Sequence[Judged]) -> list[Finding]:
-    """The findings of a document, those on which most depends first, else in the order of the document."""
+    """Return the findings of a document, the most important first, otherwise in the order of the document."""
     faulty = {row.key: row for row in rows if row.verdict not in SILENT}
     roots = {key: _root(key, faulty) for key in faulty}
     first: dict[tuple[str, str], str] = {}
@@ -78,7 +78,7 @@ def findings(rows: Sequence[Judged]) -> list[Finding]:
 
 
 def with_causes(rows: Sequence[Judged]) -> list[Judged]:
-    """The rows, each with its cause and the weight of that."""
+    """Return copies of the rows in which each faulty row has the key of its cause and the weight of the finding."""
     of = {row.key: finding for finding in findings(rows) for row in (*finding.places, *finding.spoiled)}
     return [
         replace(row, cause=of[row.key].cause, weight=of[row.key].weight.value) if row.key in of else row for row in rows
@@ -86,13 +86,13 @@ def with_causes(rows: Sequence[Judged]) -> list[Judged]:
 
 
 def _fault(row: Judged) -> tuple[str, str]:
-    """What rows with one cause share: the edit or form, or what is printed and what it should be."""
+    """Return the text that rows with one cause share, with the verdict: form of the fault, or print and correction."""
     printed = f"{row.printed}: {row.derived}" if row.by_formula else row.key
     return row.verdict, row.form or printed
 
 
 def _root(key: str, faulty: Mapping[str, Judged]) -> str:
-    """Where the fault of a row comes from: up along what it follows from, as long as that is faulty itself."""
+    """Return the key of the row where the fault of a row originates, following `spoiled_by` to faulty rows only."""
     seen = [key]
     while True:
         above = [

@@ -1,4 +1,4 @@
-"""Published constants that number rows may use beside what the document states; each with its source."""
+"""Published constants, each with its source, that rows with numbers may use besides the document's own values."""
 
 PUBLISHED = {
     "mu_earth": "398600.4418 km^3/s^2",  # IERS Conventions (2010), table 1.1, geocentric, TCG-compatible
@@ -22,4 +22,7 @@ CUSTOMARY = {
     "au": ("1.5e8 km", "1.496e8 km"),
     "G_newton": ("6.67e-11 m^3/kg/s^2", "6.673e-11 m^3/kg/s^2"),
 }
-"""What textbooks calculate with instead: a number that comes out with one of these is imprecise, not wrong."""
+"""Values of constants that textbooks use instead of the published ones.
+
+A printed number that agrees with one of these values is called imprecise instead of wrong.
+"""

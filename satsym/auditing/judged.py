@@ -1,9 +1,9 @@
-"""A row with its verdict: what the audit answers.
+"""A row (one claim of a document) with its verdict, the result of an audit.
 
-``confirmed``, ``misprint`` (right elsewhere in the document, or what follows does not use it), ``wrong`` (used by what
-follows, or a false claim), ``unsound`` (a right result by an invalid step), ``artefact`` (produced by the algorithm,
-not by the problem), ``unit error``, ``imprecise`` (a last digit off), ``notation`` (a letter used for two things),
-``undecided``, ``illegible``.
+The verdicts are ``confirmed``, ``misprint`` (right elsewhere in the document, or not used by what follows), ``wrong``
+(used by what follows, or a false claim), ``unsound`` (a right result by an invalid step), ``artefact`` (produced by the
+algorithm, not by the problem), ``unit error``, ``imprecise`` (the last digit is off), ``notation`` (a letter with two
+meanings), ``undecided`` and ``illegible``.
 """
 
 from __future__ import annotations
@@ -25,37 +25,37 @@ Verdict: TypeAlias = Literal[
 ]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 AS_STATED = ("item", "part", "kind", "says", "where", "printed", "role", "original")
-"""Attributes that a row has from its ledger as they stand there."""
+"""Attributes that a judged row copies from its row in the ledger."""
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A row with its verdict.
+    """A row (one claim of a document) with its verdict.
 
     Attributes
     ----------
     document, item, part, kind, says, where, printed, role, original
-        As the ledger has them.
+        Copied from the ledger.
     derived
-        What is right.
+        The right formula or value.
     diagnosis, diagnosis_id
-        A referee's sentences, in English and Indonesian; empty for what is confirmed.
+        What is wrong, in sentences of a referee, in English and Indonesian; empty for a confirmed row.
     evidence
-        Measured numbers, and the command that recomputes them.
+        Computed numbers, and the command that recomputes them.
     why, why_id
-        Why it is not so, in a sentence for people, in English and Indonesian, where the ledger has one.
+        Explanation of the fault for readers, in English and Indonesian; empty if the ledger has none.
     says_id
-        What it is about in Indonesian, where the ledger has that.
+        The subject of the row in Indonesian; empty if the ledger does not state it.
     form
-        What rows with the same fault share: the edit that puts them right, or the form of the claim.
+        Text that rows with the same fault share: the edit that corrects them, or the form of the claim.
     by_formula
-        Whether it was held against a formula or a number, not judged by a proposition.
+        Whether the row was compared with a formula or number; otherwise it was judged by a proposition.
     vacuous
-        Whether it is true only because nothing meets its condition.
+        Whether the claim is true only because nothing satisfies its condition.
     spoiled_by
-        Faulty rows that it follows from.
+        Keys of the faulty rows that the row follows from.
     cause, weight
-        Of the finding it belongs to, once rows are looked at together.
+        Cause and importance of the finding that the row belongs to, filled in after all rows are judged.
     """
 
     document: str
@@ -84,5 +84,5 @@ class Judged:
 
     @property
     def key(self) -> str:
-        """Item and part."""
+        """Item and part of the row, which identify it within its document."""
         return f"{self.item} {self.part}".strip()

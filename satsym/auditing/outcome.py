@@ -1,4 +1,4 @@
-"""What judging a row found, before rows are looked at together."""
+"""Outcome of judging one row, before the rows of a document are related to each other."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from satsym.auditing.ledger.contents import Row
 
 @dataclass(frozen=True)
 class Outcome:
-    """One row, judged by itself."""
+    """Outcome of judging one row by itself."""
 
     row: Row
     right: bool | None
-    """Whether it equals what it is held against; ``None`` where it cannot be read or decided."""
+    """Whether the row agrees with what it is compared with; ``None`` if it cannot be read or decided."""
     derived: str = ""
-    """What is right, in the document's symbols."""
+    """The right formula or value in the document's symbols."""
     plan: Plan | None = None
     remedy: Remedy | None = None
-    """How a formula was compared, and what puts it right."""
+    """How a formula was compared, and the edits that correct it."""
     sound: bool = True
     vacuous: bool = False
     artefact: bool = False
     unit: bool = False
     near: bool = False
-    """Whether its reason holds; whether nothing meets its condition; whether the printed algorithm produces it;
-    whether only its unit is wrong; whether it fails by a last digit alone."""
+    """`sound`: its reason is true. `vacuous`: nothing satisfies its condition. `artefact`: the printed algorithm
+    produces it. `unit`: only its unit is wrong. `near`: only its last digit is wrong."""
     remark: str = ""
-    """A sentence for the diagnosis."""
+    """Sentence for the diagnosis."""
     lacks: str = ""
-    """The dimension that a wrong unit has to be multiplied by."""
+    """Dimension by which a wrong unit has to be multiplied."""
     evidence: Mapping[str, object] = field(default_factory=dict)
-    """Measured numbers."""
+    """Computed values that decide the outcome, by name."""

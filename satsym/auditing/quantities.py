@@ -1,4 +1,4 @@
-"""Numbers with units: what a document states, what follows from it, and what its printed digits claim."""
+"""Numbers with units: a document's values, results computed from them, and the precision of printed digits."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 ROUNDED = "~"
-"""Before an input that is measured, or was rounded; an input without it is chosen, and exact."""
+"""Prefix of an input that is measured or rounded; an input without it is exact."""
 _POINTS, _STARTS, _HOW = 64, 4, {"eps": 1e-4}
-"""The search for extremes: points that are looked at, how many it begins at, and the step of slopes."""
+"""Parameters of the search for extrema: number of points, number of starting points, and step of the gradient."""
 _PRINTED = re.compile(
     r" *(?P<sign>[-+]?) *(?P<whole>[0-9]*)(?:\.(?P<part>[0-9]*))?(?:[eE](?P<power>[-+]?[0-9]{1,3}))? *"
 )
@@ -37,12 +37,12 @@ _BASES = {
 _FLOATS = {name: getattr(math, name) for name in "sin cos tan sqrt exp log asin acos atan sinh cosh tanh atan2".split()}
 _FLOATS |= {"abs": abs, "min": min, "max": max}
 _ROOTS = 12
-"""The highest root that is taken of a unit."""
+"""Highest root of a unit that is supported."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value in base units, and the exponents of its dimension."""
+    """A value in base units with the exponents of its dimension."""
 
     value: float
     dimension: Mapping[str, Fraction]
@@ -85,7 +85,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class PrintedNumber:
-    """Digits and what they claim: the value, give or take half a unit in the last place, in the printed unit."""
+    """A printed number: value, half a unit of its last digit, and unit."""
 
     text: str
     value: Fraction
@@ -94,7 +94,7 @@ class PrintedNumber:
 
 
 def printed_number(text: str) -> PrintedNumber:
-    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are."""
+    """Read a number with a unit; trailing zeros are significant only after a decimal point."""
     text = text.removeprefix(ROUNDED)
     match = _PRINTED.match(text)
     if match is None or not (match["whole"] or match["part"]):
@@ -111,13 +111,13 @@ def printed_number(text: str) -> PrintedNumber:
 
 
 def check_unit(unit: str) -> None:
-    """Refuse a unit that is unknown. This loads pint."""
+    """Raise BadInput for an unknown unit; this loads pint."""
     if unit.strip() not in ("", "1"):
         units.dimension(unit)
 
 
 def in_base_units(text: str) -> Quantity:
-    """A number with a unit, in base units."""
+    """Return a number with a unit in base units."""
     number = printed_number(text)
     dimension = {base: Fraction(power) for base, power in units.dimension(number.unit).items()}
     if number.unit == "1":
@@ -127,19 +127,19 @@ def in_base_units(text: str) -> Quantity:
 
 
 def one(unit: str) -> Quantity:
-    """One unit, in base units."""
+    """Return one unit in base units."""
     return in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
 
 
 def base_unit(dimension: Mapping[str, Fraction]) -> str:
-    """The product of base units of a dimension."""
+    """Return the product of base units that has a given dimension."""
     if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
         raise BadInput("the exponents of a unit must be integers")
     return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
 
 
 def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
-    """Refuse names in the formula of a number that are neither stated by the document nor published constants."""
+    """Refuse names in the formula of a number that are neither inputs of the document nor published constants."""
     if isinstance(tree, Equality):
         raise BadInput("is an equation; write only the expression for the number")
     known = {*inputs, *PUBLISHED, "pi"}
@@ -152,7 +152,7 @@ def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
 
 
 def is_numeric(tree: Node | Equality) -> bool:
-    """Whether the formula needs nothing derived, only numbers."""
+    """Return whether a formula contains only numbers and inputs, and nothing derived."""
     return not isinstance(tree, Equality) and all(
         not isinstance(part, Text) and (not isinstance(part, Call) or part.function in FUNCTIONS)
         for _, part in walk(tree)
@@ -160,7 +160,13 @@ def is_numeric(tree: Node | Equality) -> bool:
 
 
 def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
-    """The value of a formula over stated and published quantities; different dimensions put together are refused."""
+    """Return the value of a formula for the document's inputs and published constants.
+
+    Raises
+    ------
+    BadInput
+        If the formula adds or compares different dimensions, or has no finite value.
+    """
     return _finite(tree, _known(tree, inputs))
 
 
@@ -180,10 +186,11 @@ def _finite(tree: Node, known: Mapping[str, Quantity]) -> Quantity:
 
 
 def bounds(tree: Node, inputs: Mapping[str, str]) -> tuple[float, float]:
-    """The smallest and the largest value of a formula whose rounded inputs may be anywhere in what their digits claim.
+    """Return the smallest and largest value of a formula over all values of its rounded inputs.
 
-    An input is marked as rounded by a tilde (``"~ 6378 km"``). Where the value rises or falls with each of them it is
-    that of a corner; others are found by descending from the best of evenly spread points.
+    A tilde marks a rounded input (``"~ 6378 km"``), which may have any value that its digits allow. If the formula is
+    monotonic in each input, its extrema are at corners; otherwise they are found by descent from the best of evenly
+    distributed points.
     """
     import numpy as np
     from scipy.optimize import minimize

@@ -1,4 +1,4 @@
-"""One ledger from the first row to the last."""
+"""Audit of one ledger, from its first row to its last."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     Parameters
     ----------
     ledger
-        As it was read.
+        The ledger as it was read.
     items
-        Items, or items with their parts, to judge; all by default. Rows that bear on them are judged, too.
+        Items, or items with parts, whose rows are judged; by default all. Rows that they depend on are also judged.
     announce
-        Told what comes next.
+        Function that is called with a text before each row.
 
     Raises
     ------
     BadInput
-        If a row names what no derivation has, or is held against what it cannot be compared with.
+        If a row refers to a quantity that no derivation has, or cannot be compared with its target.
     """
     with shelf.opened(ledger.folder):
         return _judged(ledger, items, announce)
@@ -67,7 +67,7 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
 
 
 def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
-    """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
+    """Return the keys of rows on which some verdicts depend: those used, those that use them, and equal targets."""
     rows = bench.ledger.rows
     found = set(wanted)
     for row in (bench.rows[key] for key in wanted):

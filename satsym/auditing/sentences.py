@@ -1,4 +1,4 @@
-"""What a referee says about a row, in the sentences of ``sentences.toml``. What is right comes first."""
+"""Sentences about a row in the report of a referee, from ``sentences.toml``, with what is right stated first."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from satsym.formula.writing import GREEK
 
 
 class Said(str):
-    """What is said in English, with the same in Indonesian."""
+    """A text in English that contains its Indonesian translation."""
 
     __slots__ = ("indonesian",)
     indonesian: str
 
     def __new__(cls, english: str, indonesian: str = "") -> Said:
-        """In English alone where there is nothing else."""
+        """Create a text; without a translation the English text is used for both."""
         found = super().__new__(cls, english)
         found.indonesian = str(indonesian or english)
         return found
 
 
 def say(key: str, *fill: str | Sequence[str], table: str = "rows") -> Said:
-    """A sentence of ``sentences.toml`` in both languages, its places filled in with texts, or lists of them."""
+    """Return a sentence of ``sentences.toml`` in both languages, with its gaps filled by texts or lists of texts."""
     texts = tables()[table][key]
     return Said(
         *(
@@ -37,16 +37,16 @@ def say(key: str, *fill: str | Sequence[str], table: str = "rows") -> Said:
 
 @cache
 def tables() -> dict[str, dict[str, dict[str, str]]]:
-    """All of them: table, key, language."""
+    """Return all sentences by table, key and language."""
     return tomllib.loads(files("satsym.auditing").joinpath("sentences.toml").read_text(encoding="utf-8"))
 
 
 _WORD = re.compile(r"(?:a|[a-z]{2,}(?:-[a-z]{2,})*)(?=[,:;]? (?![=<>+*/]))")
-"""A word that begins a clause; single letters, names with digits and what is called or compared are symbols."""
+"""Pattern of the first word of a clause; single letters, names with digits and compared names are symbols."""
 
 
 def joined(parts: Iterable[str], by: str = " ") -> Said:
-    """Sentences, or clauses, one after the other."""
+    """Return sentences or clauses joined to one text in both languages."""
     given = [part for part in parts if part]
     return Said(by.join(given), by.join(in_indonesian(part) for part in given))
 
@@ -55,7 +55,7 @@ _DIMENSION = re.compile(r"(?<=\[)\w+(?=\])")
 
 
 def in_indonesian(text: str) -> str:
-    """A text in Indonesian, if that is known; of a formula names of dimensions."""
+    """Return the Indonesian translation of a text; in a formula, only names of dimensions are translated."""
     if isinstance(text, Said):
         return text.indonesian
     known = tables()["dimension_names"]
@@ -63,7 +63,7 @@ def in_indonesian(text: str) -> str:
 
 
 def measured_in_indonesian(text: str) -> str:
-    """What was measured, with what its terms are called in Indonesian; numbers and formulas stay as they are."""
+    """Return computed values with the names of their terms in Indonesian; numbers and formulas are unchanged."""
     known = _pairs("measured")
     phrases = "|".join(map(re.escape, known))
     return re.sub(rf"\b(?:{phrases})\b", lambda phrase: known[phrase[0]], text)
@@ -79,12 +79,12 @@ def _pairs(table: str) -> dict[str, str]:
 
 
 def stated(said: Said, what: str = "") -> Said:
-    """A sentence without its full stop, and after a colon what there is to it."""
+    """Return a sentence without its full stop, followed by a colon and further text."""
     return joined([said, *([": ", what] if what else []), "."], "")
 
 
 def sentence(clause: str) -> Said:
-    """A clause as a sentence of its own, where it does not begin with a symbol; nothing for none."""
+    """Return a clause as a sentence, with a capital unless it begins with a symbol; empty for an empty clause."""
     return Said(*map(_with_capital, (clause, in_indonesian(clause))))
 
 

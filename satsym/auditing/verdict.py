@@ -1,4 +1,4 @@
-"""Verdicts: what the outcomes of single rows mean in the light of the whole document."""
+"""Verdicts on rows, from the outcomes of all rows of a document and the relations between them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas
 
 FORMULAS = ("equation", "matrix")
-"""Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
+"""Kinds of rows that can be misprints; lines of programs and numbers are wrong instead."""
 
 
 def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | None = None) -> list[Judged]:
-    """The verdicts of some rows, by default of all, from the outcomes of all rows in order."""
+    """Return the verdicts on some rows, by default all, from the outcomes of all rows in order."""
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
     chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
@@ -38,7 +38,7 @@ def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | 
 
 
 class _Context:
-    """The rows of a document beside each other."""
+    """Relations between the rows of a document."""
 
     def __init__(self, bench: Bench, outcomes: Mapping[str, Outcome]) -> None:
         self._bench = bench
@@ -71,7 +71,7 @@ class _Context:
         )
 
     def _why(self, outcome: Outcome) -> str:
-        """The sentence for people; that of a claim was made when it was judged."""
+        """Return the explanation for readers of a row; for a claim it is part of the outcome."""
         row = outcome.row
         return outcome.remark if row.claims is not None else Pages(self._bench, row).explained()
 
@@ -128,14 +128,14 @@ class _Context:
         ]
 
     def _spoiled_by(self, outcome: Outcome) -> list[str]:
-        """Faulty rows that a faulty row follows from."""
+        """Return the keys of faulty rows that a faulty row follows from."""
         row = outcome.row
         if row.claims is not None:
             return [key for key in row.uses if self._outcomes[key].right is False]
         return self._wrong_among(row.uses) if row.follows is not None and self._follows(row, {}) else []
 
     def _used_by(self, row: Row) -> tuple[list[str], list[str]]:
-        """Rows that carry the error on, and rows that follow from the right formula only."""
+        """Return the rows that carry the error of a row on, and the rows that follow only from its right formula."""
         carried, corrected = [], []
         for other in self._outcomes.values():
             if row.key in other.row.uses and other.plan is not None:
@@ -152,7 +152,7 @@ class _Context:
         return bool(wrong) and self._follows(row, {key: self._corrected(key) for key in wrong})
 
     def _takes_over(self, outcome: Outcome) -> bool:
-        """Whether nothing is wrong with a formula but what it takes over from others, and follows from as printed."""
+        """Return whether a formula is wrong only because it follows, as printed, from faulty rows."""
         row = outcome.row
         source = self._spoiled_by(outcome) if row.claims is None and outcome.right is False else []
         if not source:
@@ -171,11 +171,11 @@ class _Context:
         return formulas.is_zero(found - target)
 
     def _wrong_among(self, keys: Sequence[str]) -> list[str]:
-        """Formulas that differ from what they are held against."""
+        """Return the keys of formulas that differ from their targets."""
         return [key for key in keys if self._outcomes[key].plan is not None and not self._outcomes[key].right]
 
     def _follows(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
-        """Whether a row follows from the rows it names, some of them replaced."""
+        """Return whether a row follows from the rows that it refers to, some of them replaced."""
         asked = row.key, tuple(replacements)
         if asked not in self._known:
             work = partial(self._follows_from, row, replacements)
@@ -183,7 +183,10 @@ class _Context:
         return self._known[asked]
 
     def _instead(self, row: Row) -> str:
-        """What follows from the rows that a row names, in the symbols of the document; empty where it is no formula."""
+        """Return what follows from the rows that a row refers to, in the document's symbols.
+
+        It is empty if it is no formula.
+        """
         both = self._bench.follows(row)
         found = both.exact.rhs if isinstance(both.exact, Relation) else both.exact
         if isinstance(found, Roots | Kernel) or not both.has_a_value:
@@ -204,12 +207,12 @@ class _Context:
         return any(way.may_hold(way.printed) and way.is_right(way.printed) for way in ways)
 
     def _only_names(self, row: Row, relation: Relation[Any]) -> bool:
-        """Whether a relation says what a name stands for, and a row does not put the same name in another form."""
+        """Return whether a relation only defines a name that the row does not write in another form."""
         used = {name for key in row.uses for name in self._defined_in(self._bench.rows[key])}
         return formulas.is_zero(relation.lhs - relation.rhs) and not used & self._defined_in(row)
 
     def _defined_in(self, row: Row) -> set[str]:
-        """Letters of a row that stand for more than themselves."""
+        """Return the letters of a row that stand for an expression."""
         meanings = self._bench.scope(row).meanings
         return {name for name in names_in(row.printed) if not isinstance(meanings.get(name, ONE), Sym | Num)}
 
@@ -220,13 +223,13 @@ class _Context:
 
 
 def _same(one: Outcome, other: Outcome) -> bool:
-    """Whether two rows are put right by the same change."""
+    """Return whether two rows are corrected by the same edits."""
     mine, others = ([(e.change, e.old, e.new) for _, e in o.remedy.edits] if o.remedy else [] for o in (one, other))
     return bool(mine) and mine == others
 
 
 def _form(outcome: Outcome) -> str:
-    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or edits, units."""
+    """Return the text that rows with the same fault share: the form of a claim, or the edits or unit of a formula."""
     if outcome.row.claims is not None:
         return shape(outcome.row.claims.tree)
     if outcome.remedy is None:
@@ -235,7 +238,7 @@ def _form(outcome: Outcome) -> str:
 
 
 def _change(edit: Edit) -> str:
-    """What an edit does, wherever it does it: of a factor too many, or missing, only the factor counts."""
+    """Return what an edit does, independent of its place; for a missing or superfluous factor, the factor."""
     if edit.change in (Change.DROPPED_FACTOR, Change.MISSING_FACTOR):
         old, new = (Counter(written(f) for f in _factors(part) if f != ONE) for part in (edit.old, edit.new))
         return f"{edit.change.name} {' * '.join((old - new) | (new - old))}"

@@ -1,4 +1,4 @@
-"""Checking one printed formula: read, understood, held against every equation of a model, explained."""
+"""Check of one printed formula: it is read, interpreted, compared with every equation of a model, and explained."""
 
 from __future__ import annotations
 
@@ -26,23 +26,26 @@ from satsym.records import shelf
 from satsym.status import BadInput
 
 _SIMILAR = 0.75
-"""Likeness from which on an equation is meant even where no edit leads to it."""
+"""Likeness above which an equation of the model is taken as the intended one even if no edit leads to it."""
 _NEAR_LIKENESS = 0.34
-"""Likeness below which an equation is not taken for the one that is meant."""
+"""Likeness below which an equation of the model is never taken as the intended one."""
 _SAME_LIKENESS = 1.0
-"""Likeness from which on an equation that holds somewhere is that equation, not something that follows from it."""
+"""Likeness above which an equation that holds only at some times is identified with the printed one.
+
+Below, the printed equation might merely follow from it.
+"""
 _SOMEWHERE = 0.25
-"""Likeness that an equation is thought less likely by that holds somewhere alone."""
+"""Deduction from the likeness of equations that hold only at some times, such as boundary conditions."""
 _TRIED = 5
-"""Equations for which an edit is sought."""
+"""Number of the most similar equations for which an edit is searched."""
 _LOOKED_AT = 12
-"""Guesses for which equations that come near are looked for."""
+"""Number of interpretations of the letters for which similar equations are searched."""
 _ODD = 0.03
-"""Likeness that one step of oddity of a guess counts for."""
+"""Deduction from the likeness for each step of oddity (unnaturalness) of an interpretation of the letters."""
 
 
 def check(text: str, model: str, let: Sequence[str] = (), free: bool = False) -> list[Answer]:
-    """Check the equations of a formula; see :func:`satsym.check`."""
+    """Check the equations in a formula and return one answer for each; see :func:`satsym.check`."""
     derived = Derived(shelf.find(model))
     meanings = Meanings(derived)
     given = given_letters(let, derived)
@@ -53,7 +56,7 @@ def check(text: str, model: str, let: Sequence[str] = (), free: bool = False) ->
 
 
 def check_in(text: str, model: str, folder: Path, let: Sequence[str] = (), free: bool = False) -> list[Answer]:
-    """Check a formula against a model that is shipped, or lies in a folder as seen from another."""
+    """Check a formula against a model that is shipped, or that lies in a folder relative to `folder`."""
     place, name = shelf.place_of(model, folder)
     with shelf.opened(place):
         return check(text, name, let, free)
@@ -69,7 +72,7 @@ def _read(text: str, latex: bool, meanings: Meanings, given: Mapping[Letter, str
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Equations of one formula, with all that is needed to judge them."""
+    """Equations of one formula, with the model and the meanings of letters that are needed to judge them."""
 
     derived: Derived
     meanings: Meanings
@@ -80,18 +83,18 @@ class Subject:
 
     @cached_property
     def letters(self) -> dict[str, Letter]:
-        """Name in the trees -> printed letter, those of the model's own notation besides."""
+        """Printed letters by their names in the trees, including the letters of the model's own notation."""
         own = {letter.name: letter for letter in self.meanings.known}
         return {**own, **self.reading.letters}
 
     def writer(self, latex: bool, besides: Mapping[str, str] | None = None) -> Writer:
-        """Writes trees in the notation of the formula."""
+        """Return a writer of trees in the notation of the formula, in LaTeX or in plain text."""
         if latex:
             return in_latex({**{name: letter.latex for name, letter in self.letters.items()}, **(besides or {})})
         return in_plain(besides or {})
 
     def answer(self, statement: Node | Equality) -> Answer:
-        """Judge one statement."""
+        """Judge one statement of the formula; a statement that cannot be compared is undecided."""
         try:
             if isinstance(statement, Call) and statement.function in RELATIONS.values():
                 return self.answered(
@@ -117,7 +120,7 @@ class Subject:
         correct: Node | Equality | None = None,
         besides: tuple[Mapping[str, str], Mapping[str, str]] = ({}, {}),
     ) -> Answer:
-        """The answer, in the notation of the formula."""
+        """Return the answer with the given verdict, written in the notation of the formula."""
         latex, plain = besides
         write, write_tex = self.writer(self.latex, latex if self.latex else plain), self.writer(True, latex)
         shown = correct if correct is not None else statement
@@ -145,7 +148,11 @@ class Subject:
         )
 
     def _at_one_time(self, statement: Node | Equality, there: AtOneTime) -> Answer:
-        """Judge what is said of the beginning or the end alone: against what holds there, or always."""
+        """Judge an equation that is taken at the initial or the final time only, e.g. a boundary condition.
+
+        The equation is compared with the conditions of the model at this time and with equations that hold at all
+        times.
+        """
         found = self.answer(there.equation)
         target = found.fit.target if found.fit else None
         meant = found.verdict == "right" or (target is not None and there.is_condition(target))
@@ -213,7 +220,7 @@ class Subject:
         return self.answered(statement, "wrong", found.diagnosis, fit=fit, correct=found.correct, besides=besides)
 
     def derivatives(self, latex: bool, derivatives: Mapping[str, Node]) -> dict[str, str]:
-        """How derivatives that are one letter in the tree are written."""
+        """Return how derivatives that are replaced by one letter in the tree are written."""
         write = self.writer(latex)
         return {name: write(tree) for name, tree in derivatives.items()}
 
@@ -242,7 +249,7 @@ class Subject:
             yield from self.meanings.alternatives(letters, self.given)
 
     def _is_label(self, letter: Letter) -> bool:
-        """Whether a letter only names what is on the right."""
+        """Return whether a letter is only the name of the right-hand side, and does not occur in it."""
         for statement in self.reading.statements:
             if isinstance(statement, Equality) and statement.lhs == Sym(letter.name):
                 return letter.name not in symbols(statement.rhs)
@@ -253,7 +260,7 @@ class Subject:
         return self.meanings.tree(letter, guess.meaning) if letter else None
 
     def meant(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> dict[str, Node]:
-        """Name in the tree -> what it means."""
+        """Return what each name in the tree means, as a formula in the names of the model."""
         found: dict[str, Node] = {}
         for name in sorted(names_in(named)):
             if name in derivatives:
@@ -265,7 +272,10 @@ class Subject:
         return found
 
     def residuals(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> Iterator[Node]:
-        """The difference of the sides in our names; for a sole expression, from each thing that it may be."""
+        """Yield the difference of the two sides in the names of the model, or a sole expression itself.
+
+        An equation "... = const" yields the time derivative of its left-hand side along the motion.
+        """
         meant = self.meant(named, derivatives, guess)
         if isinstance(named, Equality):
             if named.rhs == Sym(CONSTANT):
@@ -276,7 +286,10 @@ class Subject:
             yield substituted(named, meant)
 
     def _right(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess) -> Fit | None:
-        """How an equation is right, understood in one way; ``None`` where it is not."""
+        """Return how an equation holds in the model, for one interpretation of the letters.
+
+        Return ``None`` if it does not hold.
+        """
         residual = next(self.residuals(named, derivatives, guess))
         if not is_plain(residual):
             raise BadInput(
@@ -307,7 +320,7 @@ class Subject:
         return Fit(guess, found[0], False, 1.0) if found else None
 
     def _identity(self, named: Equality, guess: Guess) -> Fit | None:
-        """The equation that only says which state is the rate of which."""
+        """Return the fit of an equation that only states which state is the rate of change of another state."""
         dotted = [self.reading.letters[n] for n in symbols(named.lhs) | symbols(named.rhs) if n in self.reading.letters]
         for letter in dotted:
             name = guess.meaning.get(letter.still) or self.meanings.named(letter.still)
@@ -320,7 +333,7 @@ class Subject:
         return next((target for target in self.derived.targets if target.address == address), None)
 
     def _likest(self, residual: Node, besides: Mapping[str, Node]) -> Target | None:
-        """The equation that is most like one that is right."""
+        """Return the equation of the model most similar to an equation that holds; ``None`` if none is similar."""
         best: tuple[float, Target | None] = 0.7, None
         inside = symbols(residual)
         for target in self.derived.targets:
@@ -333,7 +346,10 @@ class Subject:
         return best[1]
 
     def _near(self, named: Node | Equality, derivatives: Mapping[str, Node], guess: Guess, least: float) -> list[Fit]:
-        """Equations that one comes near, understood in one way, as far as they are alike enough to be of interest."""
+        """Return the equations of the model that are similar to the printed one, for one interpretation of the letters.
+
+        Equations with a likeness below `least` are left out.
+        """
         residual = next(self.residuals(named, derivatives, guess))
         found = []
         inside = symbols(residual)

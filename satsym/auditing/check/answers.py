@@ -1,4 +1,4 @@
-"""What comes of checking an equation."""
+"""Answers: the results of checking a printed equation against a model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Verdict = Literal["right", "wrong", "undecided"]
 
 @dataclass(frozen=True)
 class Fit:
-    """A way to understand an equation, with the equation of the model that it comes near."""
+    """An interpretation of a printed equation, with the equation of the model that it is compared with."""
 
     guess: Guess
     target: Target | None
@@ -24,32 +24,33 @@ class Fit:
 
 @dataclass(frozen=True)
 class Answer:
-    """What comes of checking one equation.
+    """The result of checking one printed equation.
 
     Attributes
     ----------
     formula
-        The equation as it was read, in the notation that it was given in.
+        The equation as it was read, in the notation in which it was entered.
     model
         Name of the model.
     letters
-        Printed letter -> our name, for letters that are no names of the model's own notation.
+        Printed letter -> name in the model, for letters that do not belong to the model's own notation.
     free
-        Whether it is right, or meant, for the uncontrolled motion.
+        Whether the equation is compared with the uncontrolled motion, in which all controls are zero.
     verdict
         ``right``, ``wrong`` or ``undecided``.
     address
-        The equation that it is, or is meant to be; empty where it merely follows, or nothing comes near.
+        Address of the equation of the model that the printed one is, or is meant to be. Empty if the printed equation
+        only follows from several equations, or if no equation of the model is similar.
     diagnosis
-        What is wrong, in a sentence; empty for what is right.
+        One sentence that says what is wrong; empty for a right equation.
     correct
-        The right equation in the notation it was given in; empty where none is known.
+        The correct equation in the notation in which it was entered; empty if none is known.
     latex
-        The right equation in LaTeX; that of a right one is itself.
+        The correct equation in LaTeX, for a right equation the equation itself.
     plain
-        The same in plain notation.
+        The correct equation in plain text.
     fit
-        How it was understood.
+        How the letters were interpreted, and which equation of the model was compared.
     """
 
     formula: str
@@ -66,12 +67,12 @@ class Answer:
 
 
 def worst(answers: Sequence[Answer]) -> Answer:
-    """The first that is wrong, else the first that is undecided, else the first."""
+    """Return the first wrong answer, otherwise the first undecided answer, otherwise the first answer."""
     return min(answers, key=lambda answer: ("wrong", "undecided", "right").index(answer.verdict))
 
 
 def as_object(formula: str, answers: Sequence[Answer]) -> dict[str, Any]:
-    """What JSON has of it: the worst answer, and all of them where there are several."""
+    """Return the JSON object of a checked formula: the worst answer, and all answers if there are several equations."""
     found = {"formula": formula, **_object(worst(answers))}
     return found | ({"equations": [{"formula": a.formula, **_object(a)} for a in answers]} if len(answers) > 1 else {})
 

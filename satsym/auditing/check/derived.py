@@ -1,4 +1,4 @@
-"""What a derivation establishes, made ready for comparison: its equations with one name for each rate."""
+"""Equations of a derivation, prepared for comparison: each time derivative has one name only."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from satsym.records.record import Record
 from satsym.status import BadInput
 
 _GIVEN = ("reference", "reference_condition", "boundary_conditions", "boundary_residual", "deviations", "stationarity")
-"""Steps that state what holds somewhere, not everywhere."""
+"""Steps of a derivation whose equations hold at some times only, not along the whole motion."""
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
-"""Steps that are named first where several state the same."""
+"""Steps whose equations are preferred when several steps contain the same equation."""
 _NOT_PLAIN = {*NOT_COMPARED, "transpose", "det", "norm", "sat", "diff", "d"}
 _COST = ("L", "S")
 _DEEPEST = 12
@@ -27,22 +27,22 @@ _DEEPEST = 12
 
 @dataclass(frozen=True)
 class Target:
-    """An equation of the derivation, with one name for each rate."""
+    """An equation of a derivation in which each time derivative has one name only."""
 
     address: str
     equation: Equality
     always: bool
-    """Whether it holds all along the motion, whatever the controls are."""
+    """Whether the equation holds at all times and for all values of the controls."""
 
     @cached_property
     def residual(self) -> Node:
-        """The difference of its sides."""
+        """The left-hand side minus the right-hand side."""
         return difference(self.equation.lhs, self.equation.rhs)
 
 
 @dataclass(frozen=True, eq=False)
 class Derived:
-    """A record, and what is known from it."""
+    """A record of a derivation, with the names and equations that follow from it."""
 
     record: Record
 
@@ -58,23 +58,23 @@ class Derived:
 
     @cached_property
     def costates(self) -> tuple[str, ...]:
-        """Names of the costates, in the order of the states; none where nothing is optimised."""
+        """Names of the costates in the order of the states; empty if the model has no optimal control problem."""
         return tuple(name for name in (f"lambda_{state}" for state in self.states) if name in self.record.names)
 
     @cached_property
     def base(self) -> frozenset[str]:
-        """Names that stand for themselves."""
+        """Names without a definition: states, controls, parameters and costates."""
         declared = (n for n, entry in self.record.names.items() if entry.kind in ("state", "control", "parameter"))
         return frozenset((*declared, *self.costates))
 
     @cached_property
     def positive(self) -> frozenset[str]:
-        """Names of what is positive."""
+        """Names of the quantities that are positive."""
         return frozenset(name for name, entry in self.record.names.items() if entry.positive)
 
     @cached_property
     def speeds(self) -> Mapping[str, str]:
-        """State -> the state that is its rate."""
+        """State -> the state that is its time derivative."""
         found = {}
         for step in self.record.steps:
             for equation in step.equations if step.name in ("first_order", "original_equations") else ():
@@ -85,7 +85,7 @@ class Derived:
 
     @cached_property
     def others(self) -> frozenset[str]:
-        """States of the motion that this one was derived from."""
+        """States of the nonlinear or original model that this model was derived from, if there is one."""
         found = (n.removeprefix("d_") for n in self.record.names if n.startswith("d_"))
         return frozenset(n for n in found if n not in self.states and n not in self.costates)
 
@@ -95,7 +95,7 @@ class Derived:
         return found | {f"d_{x}": Sym(v) for x, v in self.speeds.items()}
 
     def rate(self, name: str, times: int = 1) -> Node | None:
-        """The time derivative of a quantity: its name, or its formula; ``None`` if it has neither."""
+        """Return the time derivative of a quantity of the given order, as a name or as a formula."""
         tree: Node = Sym(name)
         for _ in range(times):
             if isinstance(tree, Sym) and (tree.name in (*self.states, *self.costates) or tree.name in self.others):
@@ -107,12 +107,15 @@ class Derived:
 
     @cached_property
     def kinematic(self) -> Mapping[str, str]:
-        """Address -> the state that it says the rate of by another state: what is an identity once rates are named."""
+        """Address of an equation ``d_x = v`` -> the state x.
+
+        These equations become identities once ``d_x`` is named ``v``.
+        """
         return {f"{self.record.name}:first_order.{x}": x for x in self.speeds}
 
     @cached_property
     def definitions(self) -> dict[str, Node]:
-        """Name -> what it is, all along the motion."""
+        """Formulas of the defined names that hold along the whole motion."""
         found = {name: record.formula(text) for name, text in self.record.definitions.items() if text}
         for step in self.record.steps:
             for equation in step.equations if step.name not in _GIVEN else ():
@@ -128,7 +131,10 @@ class Derived:
 
     @cached_property
     def _declared(self) -> list[tuple[str, Node]]:
-        """The cost, and outputs that are functions of the states of this motion: of a linearised one they are not."""
+        """The cost and the outputs that are functions of the states of this model.
+
+        Outputs of a linearised model are left out where they are functions of the states of the original model.
+        """
         known = self.base | {name for name, text in self.record.definitions.items() if text} | {"t"}
         found = []
         for name in (*_COST, *record.variables(self.record, "output")):
@@ -140,7 +146,7 @@ class Derived:
 
     @cached_property
     def targets(self) -> list[Target]:
-        """All equations, those that are named first at the beginning."""
+        """All equations of the derivation, with those of the preferred steps first."""
         steps = sorted(
             self.record.steps, key=lambda step: _FIRST.index(step.name) if step.name in _FIRST else len(_FIRST)
         )
@@ -160,19 +166,19 @@ class Derived:
         return found
 
     def opened(self, tree: Node, depth: int = _DEEPEST) -> Node:
-        """The tree with definitions put in, rates excepted."""
+        """Return the tree with all names replaced by their definitions, except names of time derivatives."""
         inside = {n for n in symbols(tree) if n in self.definitions and not n.startswith("d_")}
         if not inside or not depth:
             return tree
         return self.opened(substituted(tree, {n: self.definitions[n] for n in inside}), depth - 1)
 
     def along(self, tree: Node) -> Node:
-        """The derivative of something by time, along the motion.
+        """Return the time derivative of a formula along the motion.
 
         Raises
         ------
         BadInput
-            If it has a part that no rule differentiates.
+            If the formula has a part that no rule differentiates.
         """
         terms = [derivative(tree, "t")]
         for name in sorted(symbols(tree) - {"t"}):
@@ -192,7 +198,7 @@ class Derived:
         return total(terms)
 
     def differentiated(self, tree: Node) -> Node:
-        """The tree in which derivatives that are only named are worked out."""
+        """Return the tree with all derivatives that are written as ``diff`` or ``d`` evaluated."""
 
         def worked_out(part: Node) -> Node | None:
             if not isinstance(part, Call) or part.function not in ("diff", "d"):
@@ -209,7 +215,7 @@ class Derived:
 
 
 class MotionPoint(Point):
-    """A point at which defined names have the values of what they are."""
+    """A random point at which each defined name has the value of its definition."""
 
     def __init__(self, seed: str, derived: Derived, besides: Mapping[str, Node], strict: bool) -> None:
         super().__init__(seed, derived.positive, strict)
@@ -217,7 +223,7 @@ class MotionPoint(Point):
         self._asked: set[str] = set()
 
     def symbol(self, name: str) -> int:
-        """The value of a name."""
+        """Return the value of a name at this point."""
         if name not in self._known or name in self._asked:
             return super().symbol(name)
         self._asked.add(name)
@@ -227,7 +233,7 @@ class MotionPoint(Point):
             self._asked.discard(name)
 
     def value_of_call(self, node: Call) -> int:
-        """Angles and exponents are taken apart in names that stand for themselves."""
+        """Return the value of a function, with definitions inserted in its argument first if it is, e.g., a sine."""
         if node.function in BY_TERMS:
             tree: Node = node
             for _ in range(_DEEPEST):
@@ -240,7 +246,10 @@ class MotionPoint(Point):
 
 
 def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = MappingProxyType({}), points: int = 3) -> bool:
-    """Whether something is zero along the motion; besides, some names may be what only holds somewhere."""
+    """Return whether an expression is zero along the motion, tested at random points.
+
+    `besides` contains additional definitions, e.g. of equations that hold at some times only.
+    """
     for strict in (True, False):
         found = 0
         for draw in range(40):
@@ -258,7 +267,7 @@ def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = Mapping
 
 
 def says_nothing(tree: Node, derived: Derived) -> bool:
-    """Whether an expression is zero for all values of its symbols."""
+    """Return whether an expression is zero for all values of its symbols, independent of the model."""
     try:
         return all(point.value(tree) == 0 for point in points_for((tree,), "identity", derived.positive, 2))
     except Undecided:
@@ -266,7 +275,11 @@ def says_nothing(tree: Node, derived: Derived) -> bool:
 
 
 def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
-    """An equation as what one of its names is: of those that it is linear in, the likeliest first."""
+    """Yield the equation solved for one of its names, as a substitution.
+
+    The left-hand side is preferred if it is a name, otherwise a control, costate or state in which the equation is
+    linear.
+    """
     sides = target.equation
     if isinstance(sides.lhs, Sym) and sides.lhs.name not in symbols(sides.rhs):
         yield {sides.lhs.name: sides.rhs}
@@ -284,7 +297,7 @@ def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
 
 
 def is_plain(tree: Node) -> bool:
-    """Whether a tree is made of arithmetic and elementary functions alone."""
+    """Return whether a tree contains only arithmetic operations and elementary functions."""
     return symbols(tree).isdisjoint(NOT_NUMBERS) and all(
         call.function in FUNCTIONS and call.function not in _NOT_PLAIN for call in calls_in(tree)
     )

@@ -1,4 +1,4 @@
-"""Equations about the beginning or the end alone, ``x(t_f) = x_f``: what holds there is no equation of the motion."""
+"""Equations at the initial or the final time only, such as ``x(t_f) = x_f``, which are no equations of motion."""
 
 from __future__ import annotations
 
@@ -14,19 +14,22 @@ _CONDITIONS = ":boundary_conditions."
 
 @dataclass(frozen=True)
 class AtOneTime:
-    """An equation of which all is taken at one end."""
+    """An equation whose quantities are all taken at the initial time, or all at the final time."""
 
     equation: Equality
-    """What is left of it without the time."""
+    """The equation with the time argument removed."""
     last: bool
-    """Whether it is the end, not the beginning."""
+    """Whether the equation holds at the final time; otherwise at the initial time."""
 
     def is_condition(self, target: Target) -> bool:
-        """Whether an equation of the derivation is a condition at an end, or the cost of the end."""
+        """Return whether an equation of the derivation is a boundary condition, or the terminal cost."""
         return _CONDITIONS in target.address or (self.last and target.equation.lhs == Sym("S"))
 
     def holds_at_this_end(self, target: Target | None, states: tuple[str, ...]) -> bool:
-        """Whether an equation of the derivation holds at this end: what is given is the state at the beginning."""
+        """Return whether an equation of the derivation holds at this time.
+
+        The boundary conditions of the states hold at the initial time, all other boundary conditions at the final time.
+        """
         if target is None or _CONDITIONS not in target.address:
             return target is None or target.always or self.last
         of = target.equation.lhs
@@ -34,7 +37,7 @@ class AtOneTime:
 
 
 def at_one_time(statement: Node | Equality) -> AtOneTime | None:
-    """An equation about one end alone; ``None`` for what holds all along, or has to do with both ends."""
+    """Return an equation about the initial or the final time only; ``None`` for any other equation."""
     taken = [call for call in calls_in(statement) if call.function == "value"]
     places = {call.arguments[1:] for call in taken}
     if not isinstance(statement, Equality) or len(places) != 1:

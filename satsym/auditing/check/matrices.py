@@ -1,4 +1,4 @@
-"""Matrices as they are printed, held against those of a derivation of the same size."""
+"""Comparison of printed matrices with the matrices of a derivation of the same size."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Rows = tuple[tuple[Node, ...], ...]
 def matrix_answer(
     statement: Node | Equality, meanings: Mapping[str, Node], derived: Derived, subject: Subject
 ) -> tuple[Verdict, str, str, Node | Equality | None]:
-    """Verdict, address, diagnosis and the right matrix of a printed one."""
+    """Return verdict, address, diagnosis and correct matrix for a printed matrix."""
     side, label = _printed(statement)
     rows = _rows(side)
     if rows is None:
@@ -70,7 +70,7 @@ def _printed(statement: Node | Equality) -> tuple[Node, str]:
 
 
 def _rows(side: Node) -> Rows | None:
-    """The rows of a matrix; a bracket with commas is a column."""
+    """Return the rows of a matrix, where a bracket with commas is a column; ``None`` if the tree is no matrix."""
     if isinstance(side, Call) and side.function == "transpose":
         inner = _rows(side.arguments[0])
         return tuple(zip(*inner, strict=True)) if inner else None
@@ -81,7 +81,7 @@ def _rows(side: Node) -> Rows | None:
 
 
 def _matrices(derived: Derived, label: str) -> Iterator[tuple[str, Rows]]:
-    """Addresses with the entries of matrices; those of the printed name first."""
+    """Yield address and entries of each matrix of the derivation, those with the printed name first."""
     places = []
     for step in derived.record.steps:
         places += [f"{step.name}.{equation.name}" for equation in step.equations if isinstance(equation.rhs, list)]

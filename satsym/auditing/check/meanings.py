@@ -1,6 +1,7 @@
-"""What printed letters mean in a model: as its own notation has them, as somebody says, or as it may be guessed.
+"""Meanings of printed letters in a model: by the model's own notation, by the user's statement, or by a guess.
 
-A guess is told and can be corrected; verdicts are computed with it, so a wrong one is no wrong verdict of the model.
+A guess is reported and can be corrected by the user. A wrong guess therefore gives a verdict on an equation that was
+misread, but no false statement about the model.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 MOST_GUESSES = 60
-"""Ways to understand the letters of one formula that are looked at."""
+"""Number of interpretations of the letters of one formula that are tried."""
 _NAMES_EACH = 6
 _PLACES = ("x", "y", "z")
 _COSTATES = frozenset(("lambda", "p", "psi", "Lambda", "mu"))
@@ -32,7 +33,10 @@ _OPTIMAL = ("star", "opt", "hat", "ast")
 
 @dataclass(frozen=True)
 class Guess:
-    """What letters mean: printed letter without dots -> our name; how natural it is, the smaller the more."""
+    """An interpretation of letters: printed letter without dots -> name in the model.
+
+    `oddity` measures how unnatural the interpretation is; zero is the most natural.
+    """
 
     meaning: Mapping[Letter, str]
     oddity: int
@@ -40,13 +44,13 @@ class Guess:
 
 @dataclass(frozen=True, eq=False)
 class Meanings:
-    """The letters of a model."""
+    """Meanings of printed letters in one model."""
 
     derived: Derived
 
     @cached_property
     def known(self) -> Mapping[Letter, str]:
-        """Letters as the model's own notation has them -> our names."""
+        """Letters of the model's own notation -> names in the model."""
         found: dict[Letter, str] = {}
         for name, entry in self.derived.record.names.items():
             if letter := _letter(entry.latex):
@@ -58,16 +62,16 @@ class Meanings:
 
     @cached_property
     def letters(self) -> Mapping[str, Letter]:
-        """Our names -> letters."""
+        """Names in the model -> letters of the model's own notation."""
         return {name: letter for letter, name in reversed(list(self.known.items()))}
 
     def spelled(self, given: Mapping[Letter, str]) -> frozenset[str]:
-        """Names of several Latin letters that are known, and need not be set upright."""
+        """Return the known names of several Latin letters, which are read as one symbol even if printed in italics."""
         words = {letter.base for letter in (*self.known, *given)}
         return frozenset(word for word in words - GREEK if len(word) > 1 and word.isalpha())
 
     def named(self, letter: Letter) -> str | None:
-        """Our name for a letter, dots and all, where the notation or the name itself leaves no doubt."""
+        """Return the name in the model of a letter with its dots, if notation or spelling decide; else ``None``."""
         for wanted in (letter, _alike(letter), replace(_alike(letter), style="")):
             if (name := self.known.get(wanted)) is not None:
                 return name
@@ -78,7 +82,10 @@ class Meanings:
         return None
 
     def tree(self, letter: Letter, meaning: Mapping[Letter, str]) -> Node | None:
-        """What a letter means, dots included; ``None`` where nobody knows."""
+        """Return the formula of a letter, including its dots (time derivatives).
+
+        Return ``None`` if the meaning is not known.
+        """
         still = letter.still
         if letter.dots and (name := self.named(letter)) is not None and still not in meaning:
             return self._one(name)
@@ -96,7 +103,7 @@ class Meanings:
         return self.derived._one_name.get(name, Sym(name))
 
     def unknown(self, letters: Sequence[Letter], given: Mapping[Letter, str]) -> list[Letter]:
-        """Letters, without dots, that neither the notation nor what is given explains."""
+        """Return the letters, without dots, that are explained neither by the notation nor by the user."""
         found: dict[Letter, None] = {}
         for letter in letters:
             if letter.still not in given and (self.tree(letter, given) is None or self._is_other(letter)):
@@ -104,11 +111,11 @@ class Meanings:
         return list(found)
 
     def _is_other(self, letter: Letter) -> bool:
-        """Whether a letter is of the motion this one was derived from: it may be meant for a letter of this one."""
+        """Return whether a letter is a state of the original model; it may then be meant for a letter of this model."""
         return self.named(letter.still) in self.derived.others
 
     def guesses(self, letters: Sequence[Letter], given: Mapping[Letter, str]) -> Iterator[Guess]:
-        """Ways to understand letters that are not known, the most natural first."""
+        """Yield interpretations of the unknown letters, the most natural first."""
         unknown = self.unknown(letters, given)
         used = {name for letter in letters if (name := given.get(letter.still) or self.named(letter.still))}
         used -= self.derived.others
@@ -125,11 +132,11 @@ class Meanings:
         yield from sorted(found, key=lambda guess: guess.oddity)[:MOST_GUESSES]
 
     def _new(self, letter: Letter) -> list[str]:
-        """A letter that means nothing in the model, as itself; none where it is differentiated."""
+        """Return the letter itself as a new name, or an empty list if the model uses this name for something else."""
         return [] if letter.name in self.derived.record.names else [letter.name]
 
     def alternatives(self, letters: Sequence[Letter], given: Mapping[Letter, str]) -> Iterator[Guess]:
-        """Ways to understand a star or a hat on a control: the law, where no bound acts, or the control itself."""
+        """Yield interpretations of a control with a star or hat: its law without active bounds, or itself."""
         for letter in letters:
             marked = [mark for mark in letter.marks if mark in _OPTIMAL]
             bare = replace(letter.still, marks=tuple(m for m in letter.marks if m not in _OPTIMAL))
@@ -141,7 +148,7 @@ class Meanings:
                     yield Guess({**given, letter.still: other}, rank)
 
     def _candidates(self, letter: Letter, letters: Sequence[Letter], used: set[str]) -> list[str]:
-        """Our names that a letter may mean, the likeliest first."""
+        """Return names in the model that a letter may mean, the most likely first."""
         derived, names = self.derived, self.derived.record.names
         moving = any(one.still == letter and one.dots for one in letters)
         at = _place(letter)
@@ -195,12 +202,12 @@ class Meanings:
 
 
 def given_letters(texts: Sequence[str], derived: Derived) -> dict[Letter, str]:
-    """What somebody says letters mean: ``n=omega``, where the right-hand side is a name of the model.
+    """Return the meanings of letters that the user states as ``n=omega``, with a name of the model on the right.
 
     Raises
     ------
     BadInput
-        If it is not of that form, or there is no such name.
+        If a text has another form, or the model does not have the name.
     """
     found: dict[Letter, str] = {}
     for text in (part for listed in texts for part in listed.split(",")):
@@ -218,7 +225,7 @@ def given_letters(texts: Sequence[str], derived: Derived) -> dict[Letter, str]:
 
 
 def _letter(latex: str) -> Letter | None:
-    """The letter that some LaTeX is, if it is one."""
+    """Return the letter that some LaTeX consists of; ``None`` if it is not a single letter."""
     try:
         reading = read(tokens(latex), latex)
     except Unread:
@@ -232,7 +239,7 @@ def _alike(letter: Letter) -> Letter:
 
 
 def _place(letter: Letter) -> int | None:
-    """Which of several a letter is by its index, from zero."""
+    """Return the position, from zero, that the index of a letter (a number, x, y or z) refers to, else ``None``."""
     if letter.index.isdigit() and 0 < int(letter.index) < 30:
         return int(letter.index) - 1
     return _PLACES.index(letter.index) if letter.index in _PLACES else None

@@ -1,4 +1,4 @@
-"""Which equation of a derivation a printed one is meant to be: the one that it shares most terms with."""
+"""Similarity of equations: a printed equation is meant to be the derived one with which it shares most terms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST_SHIFTS = 24
 
 @lru_cache(maxsize=20_000)
 def terms(tree: Node) -> Mapping[Monomial, Complex]:
-    """A formula as a sum of products; none of what has too many."""
+    """Return a formula as a sum of products, by monomial; empty if the sum has too many terms."""
     try:
         found = terms_of(tree).coefficients
     except (TooManyTerms, RecursionError):
@@ -27,9 +27,9 @@ def terms(tree: Node) -> Mapping[Monomial, Complex]:
 
 
 def likeness(printed: Node, target: Node, least: float = 0.0) -> float:
-    """How much of two residuals is the same, up to a common factor: one for the same, at most zero for nothing.
+    """Return the similarity of two residuals up to a common factor: about one if they agree, zero if nothing is shared.
 
-    Zero also where it is less than what is of interest, as their numbers of terms and their letters tell.
+    Zero is also returned if the numbers of terms and the letters show that the similarity is below `least`.
     """
     one, other = terms(printed), terms(target)
     if not one or not other:

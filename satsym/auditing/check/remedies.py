@@ -1,4 +1,4 @@
-"""What is wrong with an equation that is not right: the smallest edit, sought as an audit seeks it."""
+"""Diagnosis of a wrong equation: the smallest edit that corrects it, searched in the same way as in an audit."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from satsym.auditing.comparison.plan import Plan
 
 NO_EDIT = 60.0
-"""The cost of an equation for which no edit was found; one edit costs up to some twenty."""
+"""Cost of an equation for which no edit was found; for comparison, a single edit costs at most about 20."""
 
 
 _LIMIT = budget.Limit(3_000_000)
-"""Work for the search of one edit; some seconds."""
+"""Limit of work for the search for one edit; a few seconds."""
 _SHORT_EQUATION = 80
-"""Parts of an equation, and of what it is held against, up to which the search is short by itself."""
+"""Number of parts of the two equations together, up to which the search is quick without counting its work."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was found: whether it is right after all, what is wrong, the right equation, and how large the edit is."""
+    """The result of a search for an edit: whether the equation holds, what is wrong, the correction, and the cost."""
 
     right: bool
     diagnosis: str
@@ -47,7 +47,7 @@ class Found:
 
 
 def with_names(statement: Node | Equality, subject: Subject) -> tuple[Node | Equality, dict[str, Node]]:
-    """The statement in which each derivative that is only named is one letter; and what these letters are."""
+    """Return the statement with each unevaluated derivative replaced by a letter, and what these letters stand for."""
     found: dict[str, Node] = {}
     taken = set(subject.reading.letters)
     names = (name for k in count(1) if (name := f"D{k}") not in taken)
@@ -63,7 +63,7 @@ def with_names(statement: Node | Equality, subject: Subject) -> tuple[Node | Equ
 
 
 def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> Found:
-    """The smallest edit that makes the statement the equation of the model that it comes near."""
+    """Return the smallest edit that turns the statement into the similar equation of the model."""
     assert fit.target is not None
     bench, row = _bench(named, derivatives, fit, subject)
     try:
@@ -87,7 +87,7 @@ def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Su
 
 
 def _clause(text: str) -> str:
-    """A sentence as a clause, formulas without their quotation marks."""
+    """Return a sentence as a clause: without a capital, full stop, or quotation marks around formulas."""
     text = text.replace("`", "").rstrip(".")
     return text[:1].lower() + text[1:] if text[:2].istitle() and text[1:2].islower() else text
 
@@ -99,7 +99,7 @@ def _cost(fix: Remedy | None) -> float:
 
 
 def _correct(bench: Bench, row: Row, compared: Plan, fix: Remedy | None) -> Node | Equality | None:
-    """The right equation in the symbols of what was given."""
+    """Return the correct equation in the symbols of the printed one."""
     if fix is not None:
         cells: tuple[Node, ...] = fix.cells
     else:
@@ -115,7 +115,7 @@ def _correct(bench: Bench, row: Row, compared: Plan, fix: Remedy | None) -> Node
 
 
 def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> tuple[Bench, Row]:
-    """A ledger of this one row."""
+    """Return a ledger that consists of this statement only, and its row."""
     derived = subject.derived
     assert fit.target is not None
     known = subject.meant(named, derivatives, fit.guess)
@@ -146,7 +146,10 @@ def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
 
 
 def _others(fit: Fit, subject: Subject) -> dict[str, Node]:
-    """Letters that are not printed, but could have been: of the model's own notation, and of the guessed families."""
+    """Return letters that an edit may insert, with their meanings: the model's own, and those of guessed families.
+
+    A family is, e.g., x1, x2, x3: if one member is printed, the edit may need another.
+    """
     meanings = subject.meanings
     found: dict[str, Node] = {}
     taken = set(fit.guess.meaning.values())

@@ -1,1 +1,4 @@
-"""What is printed against what is derived: names and addresses, and plans that say when the two agree."""
+"""Comparison of printed with derived formulas: resolution of names and addresses, and plans of comparison.
+
+A plan states when a printed formula agrees with the derived one.
+"""

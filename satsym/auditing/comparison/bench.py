@@ -1,4 +1,4 @@
-"""Both engines, set up for a row: names, addresses and printed rows as each of them needs."""
+"""Evaluation of the formulas of a row by two engines: names, addresses and printed rows are resolved for both."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ from satsym.wording import printable, shown, suggestion
 
 T = TypeVar("T")
 Replacements: TypeAlias = Mapping[str, Formula]
-"""Key of a row -> what is taken instead of what it prints, in our names."""
+"""Key of a row -> the formula that is used instead of the printed one, in the names of the models."""
 
 
 class Refused(BadInput):
-    """A row cannot be judged, for bad input or more work than it may take; the message names it."""
+    """A row cannot be judged because of bad input or too much work; the message names the row."""
 
 
 @dataclass(frozen=True)
 class Both:
-    """A value by each engine."""
+    """One value as computed by both engines."""
 
     trees: Value
     exact: Value
 
     @property
     def has_a_value(self) -> bool:
-        """Whether nothing in it is divided by zero, whatever its symbols are."""
+        """Whether no part of the value is divided by zero."""
         found = self.exact.of if isinstance(self.exact, Roots | Kernel) else self.exact
         if isinstance(found, Matrix):
             return all(map(formulas.has_a_value, found.entries))
@@ -50,7 +50,7 @@ class Both:
 
 @dataclass(eq=False)
 class Bench:
-    """What rows of one ledger are judged with."""
+    """The context in which the rows of one ledger are judged."""
 
     ledger: Ledger
 
@@ -63,9 +63,13 @@ class Bench:
         self._tellings: dict[str, str] = {}
 
     def within(self, limit: Limit, row: Row, work: Callable[[], T], where: str = "") -> T:
-        """Do some work for a row, within a limit; refused with its line and name, and the key that is to blame.
+        """Return the result of some work for a row, done within a limit.
 
-        Where the work met another row that is refused, it is that one which is named.
+        Raises
+        ------
+        Refused
+            If the work fails or exceeds the limit. The message names the row and `where`, the key of the row that is to
+            blame; if the work depends on another row that is refused, it names that row.
         """
         try:
             return self.allowance.within(limit, work)
@@ -78,18 +82,18 @@ class Bench:
         raise Refused(f"{row.place}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
 
     def scope(self, row: Row) -> Scope:
-        """The notation of a row."""
+        """Return the notation in which a row is printed."""
         return self.ledger.scopes[row.table.scope]
 
     @cached_property
     def names(self) -> Names:
-        """The names that rows may use: one symbol for each, in all rows."""
+        """Names that rows may use, with one symbol for each name in all rows."""
         own = dict.fromkeys(self_named(self.ledger.scopes), False)
         return library.names(self.ledger.models, own | {n: table.positive for n, table in self.ledger.symbols.items()})
 
     @cached_property
     def dimensions(self) -> Any:
-        """Dimensions of all names that have one."""
+        """Dimensions of all names whose dimension is known."""
         return library.dimensions_of(
             self.ledger.models, {name: table.unit for name, table in self.ledger.symbols.items()}
         )
@@ -101,17 +105,17 @@ class Bench:
         return found
 
     def plain_expression(self, formula: Node) -> Any:
-        """A formula in our names as an expression of sympy's, in which definitions keep their names.
+        """Return a formula in the names of the models as a SymPy expression in which definitions keep their names.
 
         Raises
         ------
         NotAFormula
-            If it has addresses or matrices in it.
+            If the formula contains addresses or matrices.
         """
         return library.from_tree(formula, lambda name: library.named(name, self.names))
 
     def target(self, row: Row) -> Both:
-        """What a row is held against."""
+        """Return the derived quantity that a row is compared with."""
         formula = row.holds
         assert formula is not None
         if row.key not in self._targets:
@@ -122,7 +126,7 @@ class Bench:
         return self._targets[row.key]
 
     def same_target(self, one: Row, other: Row) -> bool:
-        """Whether two rows are held against the same thing, by whatever name."""
+        """Return whether two rows are compared with the same quantity, even if their addresses differ."""
         if any(row.holds is None or row.printed is None for row in (one, other)):
             return False
         return one.table.holds == other.table.holds or bool(
@@ -135,9 +139,10 @@ class Bench:
         return self._tellings[row.key]
 
     def _told(self, row: Row) -> str:
-        """The target as text, if it is particular enough that no other thing is likely to be the same.
+        """Return the target of a row as text if the text identifies the target, otherwise an empty text.
 
-        A general statement, whose symbols stand for whole derived things, prints none of them.
+        The target of a general statement, whose symbols stand for whole derived quantities, is never identified by its
+        text.
         """
         meanings = self.scope(row).meanings
         used = {name for name in names_in(row.printed) if name in meanings}
@@ -151,22 +156,22 @@ class Bench:
         return str(exact) if len(names) > 1 else ""
 
     def follows(self, row: Row, replacements: Replacements | None = None) -> Both:
-        """What follows from the rows it is said to follow from."""
+        """Return what a row should be according to the rows that it follows from."""
         formula = row.follows
         assert formula is not None
         return self._both(row, formula, theirs=True, replacements=replacements)
 
     def printed(self, row: Row, formula: Node) -> Both:
-        """A part of what a row prints."""
+        """Return the value of a formula that is part of what a row prints."""
         return self._both(row, self.scope(row).ours(formula))
 
     def in_ours(self, row: Row) -> Formula:
-        """What a row prints, in our names."""
+        """Return the printed formula of a row in the names of the models."""
         assert row.printed is not None
         return each(row.printed, self.scope(row).ours)
 
     def meanings(self, row: Row) -> Mapping[str, Node]:
-        """The document's symbols as trees without addresses; those that are matrices are left out."""
+        """Return the meanings of the document's symbols as trees without addresses, leaving out matrices."""
         known = self._meanings.get(row.table.scope)
         if known is not None:
             return known
@@ -185,7 +190,7 @@ class Bench:
         return found
 
     def theirs(self, row: Row, formula: Node) -> Node:
-        """A formula of ours in the document's symbols, where it has one for what we name; those of the row first."""
+        """Return a formula with the models' names replaced by the document's symbols, preferring symbols of the row."""
         inside = names_in(row.printed)
         names: dict[str, Node] = {}
         meanings = self.meanings(row)
@@ -196,7 +201,7 @@ class Bench:
         return substituted(formula, names)
 
     def solved(self, row: Row, relation: Both, name: str) -> Both | None:
-        """An equation solved for a symbol it is linear in; ``None`` if it is not, or does not have it."""
+        """Return an equation solved for a symbol in which it is linear, otherwise ``None``."""
         trees, exact = self.engines(row)
         if name not in symbols(relation.trees.lhs) | symbols(relation.trees.rhs):
             return None
@@ -208,11 +213,11 @@ class Bench:
             return None
 
     def engines(self, row: Row) -> tuple[Calculus, Sympy]:
-        """Both engines, for formulas in our names."""
+        """Return both engines for formulas in the names of the models."""
         return self._engine(row, Calculus), self._engine(row, Sympy)
 
     def unused(self) -> str:
-        """A name that no formula has."""
+        """Return a name that occurs in no formula."""
         taken = {*self.names.symbols, *(name for scope in self.ledger.scopes.values() for name in scope.meanings)}
         return next(name for name in ("s", *(f"s{i}" for i in range(1000))) if name not in taken)
 
@@ -221,7 +226,7 @@ class Bench:
         return Both(trees, exact)
 
     def _engine(self, row: Row, kind: type, theirs: bool = False, replacements: Replacements | None = None) -> Any:
-        """An engine for formulas in our names, or in the document's symbols."""
+        """Return an engine for formulas in the names of the models, or with `theirs` in the document's symbols."""
 
         def name(text: str) -> Any:
             return (self._theirs if theirs else self._ours)(row, text, kind)
@@ -240,7 +245,7 @@ class Bench:
         return Calculus(sources, self.names.positive) if kind is Calculus else Sympy(sources)
 
     def _at(self, row: Row, address: str) -> Both:
-        """A derived thing in the order of the document, looked up once for each notation."""
+        """Return the derived quantity at an address, with entries in the document's order; cached for each notation."""
         key = row.table.scope, address
         if key not in self._derived:
             found = library.at(address, self.names, lambda entries: self._order(row, entries))
@@ -263,7 +268,7 @@ class Bench:
         return self._engine(row, kind).value(meaning)
 
     def _symbol_meant(self, row: Row, name: str) -> str:
-        """The symbol of ours that a symbol of the document means."""
+        """Return the model's symbol that a symbol of the document means."""
         meaning = self.scope(row).meanings.get(name, Sym(name))
         if not isinstance(meaning, Sym):
             raise BadInput(
@@ -273,7 +278,7 @@ class Bench:
         return meaning.name
 
     def of_row(self, row: Row, kind: type = Sympy, instead: Formula | None = None) -> Any:
-        """What a row prints, or what is taken instead, in our names; as sympy has it, or the other engine."""
+        """Return the value of what a row prints, or of a formula that replaces it, in the names of the models."""
         engine = self._engine(row, kind)
         formula = instead if instead is not None else self.in_ours(row)
         if isinstance(formula, tuple):
@@ -283,7 +288,7 @@ class Bench:
         return engine.value(formula)
 
     def _order(self, row: Row, entries: tuple[str, ...]) -> tuple[int, ...]:
-        """Places of our names in the document's order, where its notation states one for all of them."""
+        """Return the positions of entries in the order of the document, if its notation orders all of them."""
         scope = self.scope(row)
         for listed in scope.orders.values():
             places = []

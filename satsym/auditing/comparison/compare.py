@@ -1,4 +1,4 @@
-"""How what is printed is compared with what it is held against: which plan fits the two."""
+"""Choice of the plans by which a printed formula is compared with its target."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from satsym.symbolic.lookup import formulas
 
 
 def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
-    """How a printed formula may be compared with its target: it is right if one of the plans holds."""
+    """Return the plans for comparing a printed formula with its target; the formula is right if one of them holds."""
     trees = target.trees
     if isinstance(printed, tuple):
         return [_of_matrix(bench, row, printed, target)]
@@ -36,7 +36,7 @@ def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
 
 
 def _is_label(printed: Equality) -> bool:
-    """Whether the left-hand side only names what is on the right."""
+    """Return whether the left-hand side is a symbol that only names the right-hand side."""
     return isinstance(printed.lhs, Sym) and printed.lhs.name not in symbols(printed.rhs)
 
 

@@ -1,4 +1,4 @@
-"""Plans for expressions, equations and entries of matrices; for eigenvalues, null spaces and products of matrices."""
+"""Plans of comparison for expressions, equations, matrix entries, eigenvalues, null spaces and matrix products."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from satsym.symbolic.lookup import formulas
 _MOST_FACTORS = 60
 _SIMPLEST = 6
 _MOST_DRAWS = 40
-"""Points tried for two at which roots have values."""
+"""Number of random points tried to find two at which all roots have values in the prime field."""
 _LONGEST_DIFFERENCE = 120
-"""Characters of a difference that is worth printing."""
+"""Number of characters above which a difference is not printed."""
 
 
 class Equal(Plan):
-    """Each cell equals its target, one of :class:`Both`."""
+    """Plan: each printed cell equals its target, a value of class :class:`Both`."""
 
     @cached_property
     def targets(self) -> list[Node]:
@@ -51,7 +51,7 @@ class Equal(Plan):
         return all(self.cell_holds(i, cell) for i, cell in enumerate(cells))
 
     def alone(self, index: int) -> Equal:
-        """The plan of one cell."""
+        """Return the plan of one cell only."""
         return Equal(self.bench, self.row, (self.printed[index],), (self.labels[index],), (self.target[index],))
 
     def gaps(self, index: int) -> Iterator[Node]:
@@ -68,7 +68,7 @@ class Equal(Plan):
         return text if len(text) <= _LONGEST_DIFFERENCE else ""
 
     def cell_holds(self, index: int, cell: Node) -> bool:
-        """Whether one cell would be right."""
+        """Return whether a formula in the place of one cell would be right."""
         found, target = self.both(cell), self.target[index]
         if isinstance(found.exact, Matrix):
             raise BadInput("a symbol that denotes a matrix cannot be compared with a number")
@@ -82,7 +82,7 @@ class Equal(Plan):
 
 
 class Multiple(Plan):
-    """The difference of two sides is that of the target's, times a factor that never vanishes."""
+    """Plan: lhs - rhs of the printed equation is lhs - rhs of the target, times a factor that never vanishes."""
 
     def __init__(self, bench: Bench, row: Row, sides: Equality, target: Both) -> None:
         super().__init__(bench, row, (sides.lhs, sides.rhs), ("left-hand side", "right-hand side"), target.exact)
@@ -96,7 +96,7 @@ class Multiple(Plan):
 
     @cached_property
     def factors(self) -> list[Node]:
-        """Factors that may stand between the printed equation and the target: quotients of single terms."""
+        """Factors that may relate the printed equation to the target, as quotients of single terms."""
         printed = self.both_sides(self.printed).trees
         found: dict[Node, None] = {number(1): None, number(-1): None}
         try:
@@ -118,7 +118,7 @@ class Multiple(Plan):
             yield Neg(gap) if index else gap
 
     def both_sides(self, cells: Cells) -> Both:
-        """The difference of the sides by both engines."""
+        """Return the difference of the two sides as computed by both engines."""
         lhs, rhs = map(self.both, cells)
         return Both(difference(lhs.trees, rhs.trees), lhs.exact - rhs.exact)
 
@@ -139,9 +139,9 @@ class Multiple(Plan):
         return self.vanish(difference(found.trees, tree), found.exact - quotient * self._exact)
 
     def _may_be_multiple(self, cells: Cells) -> bool:
-        """Whether what is printed may differ from what it should be by a factor of positive symbols alone.
+        """Return whether the printed equation may be the target times a factor of positive symbols only.
 
-        Then the differences of both sides have one ratio at all random points that agree in these symbols.
+        If it is, the ratio of the two is the same at all random points that agree in the positive symbols.
         """
         positive = self.bench.names.positive
         parts = [substituted(cell, self.meanings) for cell in cells]
@@ -171,23 +171,26 @@ class Multiple(Plan):
 
 
 class _SamePositive(field.Point):
-    """A point at which positive symbols, and functions of them alone, have the same values whatever its seed is."""
+    """A random point whose positive symbols, and functions of positive symbols only, do not depend on the seed."""
 
     def __init__(self, seed: str, positive: frozenset[str]) -> None:
         super().__init__(seed, positive)
         self._shared = field.Point("same", positive)
 
     def symbol(self, name: str) -> int:
-        """The value of a symbol, modulo the prime: for positive symbols that of all such points, for others its own."""
+        """Return the value of a symbol modulo the prime.
+
+        For a positive symbol it is the same at all points of this class.
+        """
         return self._shared.symbol(name) if name in self._positive else super().symbol(name)
 
     def value_of_call(self, node: Call) -> int:
-        """The value of a function."""
+        """Return the value of a function, which does not depend on the seed if its symbols are all positive."""
         return self._shared.value(node) if symbols(node) <= {*self._positive} else super().value_of_call(node)
 
 
 def _quotient(one: tuple[Monomial, Complex], other: tuple[Monomial, Complex], positive: frozenset[str]) -> Node | None:
-    """The quotient of two terms, if it never vanishes."""
+    """Return the quotient of two terms if it never vanishes, otherwise ``None``."""
     (above, (a, a_imaginary)), (below, (b, b_imaginary)) = one, other
     if a_imaginary or b_imaginary:
         return None
@@ -198,7 +201,7 @@ def _quotient(one: tuple[Monomial, Complex], other: tuple[Monomial, Complex], po
 
 
 class SameRoots(Plan):
-    """The cells are the eigenvalues of a matrix, in any order."""
+    """Plan: the printed cells are the eigenvalues of a matrix, in any order."""
 
     def __init__(self, bench: Bench, row: Row, printed: Cells, target: Both) -> None:
         super().__init__(bench, row, printed, [f"eigenvalue {i}" for i in range(1, len(printed) + 1)], target)
@@ -228,7 +231,7 @@ class SameRoots(Plan):
 
 
 class Spans(Plan):
-    """The cells are columns that span the null space of a matrix, none of them too many."""
+    """Plan: the printed columns are a basis of the null space of a matrix."""
 
     @property
     def _columns(self) -> int:
@@ -253,7 +256,7 @@ class Spans(Plan):
     def _spans(
         self, engine: Engine[Any], matrix: Matrix[Any], cells: Sequence[Any], is_zero: Callable[[Any], bool]
     ) -> bool:
-        """Whether the columns are mapped to zero, and are as many as there are independent ones."""
+        """Return whether the columns are in the null space, linearly independent, and as many as its dimension."""
         basis = Matrix(shaped(cells, self._columns))
         image = engine.product(matrix, basis)
         if not all(map(is_zero, image.entries)):
@@ -272,7 +275,7 @@ class Spans(Plan):
 
 
 class EqualMatrix(Plan):
-    """A formula whose value is a matrix, such as a product, equals the target."""
+    """Plan: a formula whose value is a matrix, such as a product of matrices, equals the target."""
 
     @property
     def targets(self) -> list[Node]:

@@ -1,8 +1,9 @@
-"""A plan says when printed cells are right: proved by two engines, which must agree.
+"""A plan states when printed cells are right, as proved by two engines that must agree.
 
-What is printed is taken as cells: an expression is one, an equation has two, a matrix has one for each entry. So
-edited cells can be tried in the place of the printed ones. The first engine is sympy, the second evaluates trees in a
-prime field. Should they disagree, as they may about roots of what has no sign, numbers with forty digits decide.
+Whatever is printed is divided into cells: an expression is one cell, an equation has two, and a matrix has one for each
+entry. Edited cells can thus be tried in the place of the printed ones. The first engine is SymPy, the second evaluates
+trees in a prime field. If they disagree, as is possible for roots of expressions of unknown sign, numerical values with
+forty digits decide.
 """
 
 from __future__ import annotations
@@ -23,14 +24,14 @@ from satsym.symbolic.lookup import formulas
 
 
 class BoundPoint(Point):
-    """A point for formulas in the symbols of a document.
+    """A random point for formulas in the symbols of a document.
 
     Parameters
     ----------
     base
-        The point for formulas in our names.
+        Random point for formulas in the names of the models.
     meanings
-        The document's symbols -> what they mean in our names.
+        Symbols of the document -> their meanings in the names of the models.
     """
 
     def __init__(self, base: Point, meanings: Mapping[str, Node]) -> None:
@@ -39,13 +40,16 @@ class BoundPoint(Point):
         self._meanings = meanings
 
     def value_of_call(self, node: Call) -> int:
-        """Angles and exponents are taken apart in our names."""
+        """Return the value of a function.
+
+        The argument of functions like the sine is first written in the models' names.
+        """
         if node.function in BY_TERMS:
             return self.base.value(substituted(node, self._meanings))
         return super().value_of_call(node)
 
     def symbol(self, name: str) -> int:
-        """The value of what a symbol of the document means."""
+        """Return the value of what a symbol of the document means."""
         if name in self._meanings:
             return self.base.value(self._meanings[name])
         if name in ("I", "pi"):
@@ -55,11 +59,14 @@ class BoundPoint(Point):
 
 Cells: TypeAlias = Sequence[Node]
 QUICK = 2
-"""Points at which an edit is tried; what passes is examined in full."""
+"""Number of points at which an edit is tried; an edit that passes at these points is then proved."""
 
 
 class Plan(ABC):
-    """When printed cells are right; labels say which is which: empty, a side of an equation, or ``"1, 2"``."""
+    """The condition under which printed cells are right.
+
+    The label of a cell is empty, the side of an equation, or the position of a matrix entry, such as ``"1, 2"``.
+    """
 
     def __init__(self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str], target: Any) -> None:
         self.bench, self.row, self.target = bench, row, target
@@ -67,37 +74,45 @@ class Plan(ABC):
 
     @abstractmethod
     def holds(self, cells: Cells) -> bool:
-        """Whether these cells would be right: proved by both engines."""
+        """Return whether the given cells would be right, as proved by both engines."""
 
     @abstractmethod
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
-        """Values that vanish at a point if the cells are right; alternatives, each in the same place at all points."""
+        """Yield residuals at a point, one list for each alternative.
+
+        All values of one list vanish if the cells are right.
+
+        The alternatives have the same order at all points.
+        """
 
     @property
     @abstractmethod
     def targets(self) -> list[Node]:
-        """What the cells ought to be, in our names, so far as that is one expression each."""
+        """Correct formulas of the cells in the names of the models, as far as each is a single expression."""
 
     def difference(self) -> str:
-        """What the printed thing lacks, in the document's symbols, if that is one short expression."""
+        """Return the term that the printed formula lacks, in the document's symbols.
+
+        It is empty if it is not one short expression.
+        """
         return ""
 
     def gaps(self, _: int) -> Iterator[Node]:
-        """What a cell lacks to be right, in our names, so far as that is known; alternatives."""
+        """Yield alternatives for the term that a cell lacks, in the names of the models, as far as they are known."""
         yield from ()
 
     @cached_property
     def meanings(self) -> Mapping[str, Node]:
-        """The document's symbols as expressions in our names."""
+        """Symbols of the document as expressions in the names of the models."""
         return self.bench.meanings(self.row)
 
     @cached_property
     def points(self) -> list[BoundPoint]:
-        """Where edits are tried."""
+        """Random points at which edits are tried."""
         return self.points_for(self.printed)
 
     def points_for(self, cells: Cells, count: int = QUICK) -> list[BoundPoint]:
-        """Points at which cells and targets have values."""
+        """Return random points at which both the cells and the targets have values."""
         found = []
         for strict in (True, False):
             for draw in range(field.DRAWS):
@@ -114,7 +129,7 @@ class Plan(ABC):
         raise field.Undecided("no point at which what is printed has a value")
 
     def may_hold(self, cells: Cells) -> bool:
-        """Whether cells are right at a few points; fast, for the search of edits."""
+        """Return whether cells are right at a few random points; fast enough for the search of edits."""
         try:
             return self._agree(self.points, cells)
         except field.NoValue:
@@ -126,7 +141,7 @@ class Plan(ABC):
             return False
 
     def _agree(self, points: Sequence[BoundPoint], cells: Cells) -> bool:
-        """Whether one alternative vanishes at all points."""
+        """Return whether the residuals of one alternative vanish at all points."""
         left: set[int] | None = None
         for point in points:
             zero = {i for i, values in enumerate(self.residuals(point, cells)) if not any(values)}
@@ -137,28 +152,28 @@ class Plan(ABC):
 
     @cached_property
     def useful(self) -> set[str]:
-        """Symbols of the document that the right formula may have: those that share something with the targets."""
+        """Symbols of the document that can occur in the right formula, because they share a name with the targets."""
         inside = {name for target in self.targets for name in symbols(target)}
         return {name for name, meaning in self.meanings.items() if symbols(meaning) & inside or not symbols(meaning)}
 
     def normal(self, node: Node) -> Node:
-        """A printed formula in our names, written as targets are, so that like parts look alike."""
+        """Return a printed formula in the models' names and in the normal form of the targets, to compare terms."""
         return formulas.to_tree(self.both(node).exact)
 
     def is_right(self, cells: Cells) -> bool:
-        """Whether these cells would be right; what has no value is not."""
+        """Return whether the given cells would be right; cells that have no value are not."""
         try:
             return self.holds(cells)
         except formulas.NotAFormula:
             return False
 
     def both(self, node: Node) -> Both:
-        """A printed formula by both engines.
+        """Return the value of a printed formula as computed by both engines.
 
         Raises
         ------
         NotAFormula
-            If it divides by zero, whatever its symbols are.
+            If the formula divides by zero for all values of its symbols.
         """
         found = self.bench.printed(self.row, node)
         if not found.has_a_value:
@@ -166,7 +181,7 @@ class Plan(ABC):
         return found
 
     def vanish(self, tree: Node, exact: Any) -> bool:
-        """Whether a difference, given to both engines, is identically zero."""
+        """Return whether a difference, given as a tree and as a SymPy expression, is identically zero."""
         positive = self.bench.names.positive
         try:
             by_field: bool | None = field.vanishes(tree, "audit", positive)
@@ -179,7 +194,7 @@ class Plan(ABC):
 
 
 class Never(Plan):
-    """In the place of a plan where sizes differ, so that no edit of a cell helps."""
+    """A plan that never holds, because printed formula and target differ in size and no edit of a cell can help."""
 
     def __init__(self, plan: Plan, why: Said) -> None:
         super().__init__(plan.bench, plan.row, plan.printed, plan.labels, plan.targets)

@@ -1,1 +1,1 @@
-"""What is wrong with a printed formula: the smallest edit that puts it right, or what it lacks."""
+"""Diagnosis of a wrong formula: the smallest edit that corrects it, or otherwise the term that it lacks."""

@@ -1,6 +1,6 @@
-"""All single edits of a printed formula, the smallest first: what a slip of the pen, or of an index, does.
+"""All edits of one place of a printed formula, ordered by size: the typical slips in signs, indices, factors etc.
 
-The size of an edit is that of its kind: a sign is smaller than an index, an index smaller than a number, and so on.
+The size of an edit depends on its kind: a sign counts less than an index, an index less than a number, and so on.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from satsym.formula.tree import (
 
 
 class Change(IntEnum):
-    """Kinds of edits, from the smallest to the largest."""
+    """Kinds of edits of a formula, in order of increasing size."""
 
     SIGN = 1
     INDEX = 2
@@ -55,33 +55,33 @@ class Change(IntEnum):
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of one part."""
+    """A change of one part of a formula."""
 
     change: Change
-    """Its kind."""
+    """Kind of the edit."""
     path: Path
-    """Where the part stands."""
+    """Path to the part in the tree of the formula."""
     old: Node
     new: Node
-    """The part before and after."""
+    """The part before and after the edit."""
     result: Node
-    """The whole formula after it."""
+    """The whole formula after the edit."""
     times: int = 1
-    """At how many places, where it is the same slip at several."""
+    """Number of places with the same edit."""
 
 
 _EXACT = tuple(
     Fraction(n, d) for n, d in ((2, 1), (1, 2), (3, 1), (1, 3), (4, 1), (1, 4), (3, 2), (2, 3), (6, 1), (1, 6))
 )
-"""Factors that are forgotten or written too often."""
+"""Numeric factors that authors forget or insert by mistake."""
 _FEW_PLACES = 6
-"""Places of which all choices are tried."""
+"""Number of places up to which all subsets of places are tried."""
 _STEPS = (1, -1, 2, -2)
 _FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",), "sinh": ("cosh",), "cosh": ("sinh",)}
 
 
 def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
-    """Every edit of one place with symbols that are usable, the smallest first; among equals in the printed order."""
+    """Return all edits of one place that use only usable symbols, ordered by size and then by place."""
     found: list[Edit] = []
     for path, node in walk(formula):
         if not in_exponent(formula, path):
@@ -91,9 +91,9 @@ def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = 
 
 
 def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
-    """One slip at several places: one symbol for another, or a factor too many, wherever it stands.
+    """Yield edits that repeat one slip at several places: a wrong symbol, or a superfluous factor.
 
-    Every choice of two places or more is tried if there are few, else all of them and all but one.
+    If there are few places, all subsets of at least two places are tried. Otherwise only all places, and all but one.
     """
     names = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
     for name in names:
@@ -110,7 +110,7 @@ def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] 
 
 
 def mean_edits(formula: Node) -> Iterator[Edit]:
-    """One end in the place of the mean of two symbols, wherever such a mean stands."""
+    """Yield edits that replace each mean of two symbols by the first, or by the second symbol."""
     places = [path for path, node in walk(formula) if _ends(node)]
     for end in (0, 1) if places else ():
         old = at(formula, places[-1])
@@ -118,7 +118,7 @@ def mean_edits(formula: Node) -> Iterator[Edit]:
 
 
 def _ends(node: Node) -> tuple[Node, ...]:
-    """The two symbols of a product with half of their sum; empty for what is none."""
+    """Return the two symbols of a product that contains half their sum; empty for any other tree."""
     if not isinstance(node, Mul) or Num(Fraction(1, 2)) not in node.factors:
         return ()
     sums = (f.terms for f in node.factors if isinstance(f, Add))
@@ -146,7 +146,7 @@ def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
 
 
 def spine(formula: Node, path: Path) -> list[Node]:
-    """The parts that one goes through to a place: the whole first, the part there last."""
+    """Return the nested parts of a formula on the path to a place, from the whole formula to the part at the place."""
     found = [formula]
     for step in path:
         found.append(children(found[-1])[step])
@@ -154,12 +154,12 @@ def spine(formula: Node, path: Path) -> list[Node]:
 
 
 def at(formula: Node, path: Path) -> Node:
-    """The part at a place."""
+    """Return the part of a formula at a place."""
     return spine(formula, path)[-1]
 
 
 def in_exponent(formula: Node, path: Path) -> bool:
-    """Whether a place is inside an exponent: it is changed as a whole."""
+    """Return whether a place is inside an exponent; exponents are edited only as a whole."""
     return any(isinstance(node, Pow) and step == 1 for node, step in zip(spine(formula, path), path, strict=False))
 
 
@@ -219,14 +219,14 @@ def _near(value: Fraction) -> list[Fraction]:
 
 
 def _names(letters: Scope, formula: Node) -> list[str]:
-    """Symbols that a factor may be missing of: those of the formula first, then the others of the notation."""
+    """Return symbols that may be missing as a factor: first those of the formula, then others of the notation."""
     inside = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
     others = letters.family(inside[0]) if inside else letters.family("")
     return [*inside, *(name for name in others if name not in inside)]
 
 
 def regrouped(node: Node) -> Iterator[Node]:
-    """A factor, or a denominator, that belongs to part of a bracket only; or to a longer one."""
+    """Yield formulas with a bracket moved, so that a factor or denominator applies to fewer or more terms."""
     if isinstance(node, Div) and isinstance(node.numerator, Add):
         yield from _split(node.numerator, lambda part: Div(part, node.denominator))
     if isinstance(node, Mul):
@@ -248,7 +248,7 @@ def _but(parts: tuple[Node, ...], index: int) -> tuple[Node, ...]:
 
 
 def _split(bracket: Add, around: Callable[[Node], Node]) -> Iterator[Node]:
-    """A sum of which only the last terms, or only the first ones, are in the bracket."""
+    """Yield sums in which a factor or denominator of a bracket applies only to its first, or only to its last terms."""
     for k in range(1, len(bracket.terms)):
         head, tail = bracket.terms[:k], bracket.terms[k:]
         yield Add((*head, around(combined(Add, tail))))
@@ -256,12 +256,12 @@ def _split(bracket: Add, around: Callable[[Node], Node]) -> Iterator[Node]:
 
 
 def combined(kind: type[Add] | type[Mul], parts: tuple[Node, ...]) -> Node:
-    """A sum or a product, or the only part there is."""
+    """Return the sum or product of parts, or the part itself if there is only one."""
     return parts[0] if len(parts) == 1 else kind(parts)
 
 
 def shortened(node: Node) -> Iterator[tuple[bool, Node]]:
-    """A product without a factor, a sum without a term; and whether it is a term that is gone."""
+    """Yield a product without one of its factors, or a sum without one of its terms, and whether a term was dropped."""
     if isinstance(node, Mul):
         for i in range(len(node.factors)):
             yield False, combined(Mul, _but(node.factors, i))
@@ -274,13 +274,13 @@ def shortened(node: Node) -> Iterator[tuple[bool, Node]]:
 
 
 def without_factor(node: Node, factor: Node) -> Node:
-    """A product without a factor it has."""
+    """Return a product without one of its factors."""
     assert isinstance(node, Mul)
     return combined(Mul, _but(node.factors, node.factors.index(factor)))
 
 
 def times(node: Node, factor: Fraction) -> Node:
-    """A term with another numeric factor, written as people write it."""
+    """Return a term times a number, in the usual form of writing."""
     if isinstance(node, Neg):
         return Neg(times(node.operand, factor))
     if isinstance(node, Num):
@@ -299,7 +299,7 @@ def times(node: Node, factor: Fraction) -> Node:
 
 
 def times_symbol(node: Node, symbol: Sym) -> Node:
-    """A term with one more factor."""
+    """Return a term multiplied by a symbol."""
     if isinstance(node, Neg):
         return Neg(times_symbol(node.operand, symbol))
     if isinstance(node, Div):
@@ -310,7 +310,7 @@ def times_symbol(node: Node, symbol: Sym) -> Node:
 
 
 def over_symbol(node: Node, symbol: Sym) -> Node:
-    """A term divided by one more factor."""
+    """Return a term divided by a symbol."""
     if isinstance(node, Neg):
         return Neg(over_symbol(node.operand, symbol))
     if isinstance(node, Div):

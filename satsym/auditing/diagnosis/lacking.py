@@ -1,4 +1,4 @@
-"""What a formula lacks, as one short term in the document's symbols: from the difference, not by trial."""
+"""Search for one short term that a formula lacks, computed from the difference to the target instead of by trial."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from satsym.formula.tree import ONE, Add, Div, Mul, Neg, Node, Num, Path, Sym, c
 
 _NOTHING = number(0)
 _LARGEST_TERM = 14
-"""Nodes of a term that is worth naming."""
+"""Number of nodes up to which a term is short enough to be reported."""
 
 
 def mended_terms(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Edit]]:
-    """Edits of one term, found from the difference, with the cell of each; the smallest first.
+    """Return edits of one term that correct the difference to the target, with the index of the cell, ordered by size.
 
-    The term is one that a sum lacks, or one that ought to be another.
+    An edit adds a term to a sum, or replaces one term of a sum by another.
     """
     found: list[tuple[int, int, int, int, Edit]] = []
     for i in indices:
@@ -33,7 +33,7 @@ def mended_terms(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Edit]]:
 
 
 def _alike(one: Node, other: Node) -> int:
-    """How many letters two terms share, whatever dots and primes they bear: a slip of the pen keeps most of them."""
+    """Return how many letters two terms share, without dots and hats; a typical slip keeps most letters."""
     stems = [{name.removeprefix("d_").removesuffix("_hat") for name in symbols(term)} for term in (one, other)]
     return len(stems[0] & stems[1])
 
@@ -41,7 +41,7 @@ def _alike(one: Node, other: Node) -> int:
 def _mended(
     plan: Plan, gap: Node, path: Path, node: Node, slope: Node
 ) -> Iterator[tuple[Change, Path, Node, Node, Node]]:
-    """A sum with one more term, or with another one in the place of one of its terms; and that term."""
+    """Yield edits that add a term to a sum or replace one term of it, with the new term."""
     terms = node.terms if isinstance(node, Add) else () if node == _NOTHING else (node,)
     try:
         lacking = terms_of(Div(gap, plan.normal(slope)))
@@ -58,7 +58,7 @@ def _mended(
 
 
 def _is_multiple(term: Node, other: Node) -> bool:
-    """Whether two terms differ by a number alone."""
+    """Return whether two terms differ by a numeric factor only."""
     try:
         return list(terms_of(Div(term, other)).coefficients) == [()]
     except TooManyTerms:
@@ -66,7 +66,7 @@ def _is_multiple(term: Node, other: Node) -> bool:
 
 
 def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:
-    """Sums, and the whole, that the formula depends on linearly; each with its factor."""
+    """Yield the sums on which a formula depends linearly, and the formula itself, each with its path and its factor."""
 
     def places(node: Node, path: Path, slope: Node) -> Iterator[tuple[Path, Node, Node]]:
         if isinstance(node, Add) or not path:
@@ -86,7 +86,7 @@ def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:
 
 
 def _single_term(plan: Plan, lacking: Terms, beside: Node = _NOTHING) -> Node | None:
-    """What is lacking, and a term that is there, if they make one short term in the document's symbols."""
+    """Return the sum of lacking terms and `beside` if it is one short term in the document's symbols, else ``None``."""
     try:
         terms = lacking.plus(terms_of(plan.normal(beside))).coefficients
     except TooManyTerms:

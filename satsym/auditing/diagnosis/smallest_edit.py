@@ -1,8 +1,8 @@
-"""What is wrong with a printed formula: the smallest edit that puts it right.
+"""Search for the smallest edit that corrects a printed formula.
 
-Edits are tried in a prime field at two points; what passes is proved by both engines. First exchanges of rows and
-columns, then single edits from the smallest kind to the largest, then a term that is missing, then pairs of small
-edits. Where nothing is found, the difference is all that can be said.
+Edits are tried at two random points in a prime field, and those that pass are proved by both engines. The order is:
+exchanges of rows and columns, single edits by increasing size, a missing term, and pairs of small edits. If no edit is
+found, only the difference to the target can be reported.
 """
 
 from __future__ import annotations
@@ -32,24 +32,24 @@ from satsym.formula.writing import written
 from satsym.symbolic.lookup.formulas import NotAFormula
 
 PAIRS = 50
-"""Pairs of edits that are proved, of those that pass at two points."""
+"""Number of pairs of edits that are proved, out of those that pass at two random points."""
 _MOST_ENTRIES = 6
 
 
 @dataclass(frozen=True)
 class Remedy:
-    """Edits that put a printed thing right together."""
+    """Edits that together correct what is printed."""
 
     edits: tuple[tuple[int, Edit], ...]
-    """Each with the number of its cell."""
+    """The edits, each with the index of its cell."""
     cells: tuple[Node, ...]
     """All cells after the edits."""
     exchange: Said | None = None
-    """Said instead of edits: which rows, columns or entries are exchanged."""
+    """Description of the rows, columns or entries that are exchanged, if the correction is an exchange."""
 
 
 def remedy(plan: Plan) -> Remedy | None:
-    """The smallest edits that put a printed thing right; ``None`` if none were found."""
+    """Return the smallest edits that correct what is printed; ``None`` if none were found."""
     if isinstance(plan, Never):
         return None
     try:
@@ -93,7 +93,7 @@ def _edits(plan: Plan, index: int) -> list[Edit]:
 
 
 def _first(plan: Plan, edits: Iterable[tuple[int, Edit]]) -> Remedy | None:
-    """The first edit that puts everything right."""
+    """Return the first edit that corrects all cells; ``None`` if no edit does."""
     for i, edit in edits:
         cells = _with(plan, i, edit.result)
         if plan.may_hold(cells) and plan.is_right(cells):
@@ -107,13 +107,13 @@ def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
 
 
 def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """One slip at several places of one cell."""
+    """Return the correction that repeats one slip at several places of one cell; ``None`` if there is none."""
     letters, usable = plan.bench.scope(plan.row), plan.useful.__contains__
     return _first(plan, ((i, edit) for i in indices for edit in repeated_edits(plan.printed[i], letters, usable)))
 
 
 def _entry(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """The one wrong entry of a matrix, replaced as a whole."""
+    """Return the correction that replaces the only wrong entry of a matrix; ``None`` if several entries are wrong."""
     if not isinstance(plan, Equal) or not isinstance(plan.row.printed, tuple) or len(indices) != 1:
         return None
     edit = _whole(plan, indices[0])
@@ -126,9 +126,9 @@ def _whole(plan: Equal, index: int) -> Edit:
 
 
 def _pair(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """Two edits whose effects add up to what is lacking, as those of different terms do.
+    """Return a correction by two edits whose effects on the difference add up; ``None`` if there is none.
 
-    The effect of each is measured by itself, so that partners are looked up instead of tried.
+    The effect of each edit is computed separately, so that its partner is looked up instead of found by trial.
     """
     try:
         points = plan.points
@@ -167,7 +167,10 @@ def _pair(plan: Plan, indices: Sequence[int]) -> Remedy | None:
 def _effect(
     plan: Plan, points: Sequence[BoundPoint], lacking: Sequence[Sequence[int]], cells: Sequence[Node]
 ) -> tuple[int, ...] | None:
-    """By how much an edit changes the difference, at each point."""
+    """Return by how much an edit changes the residual at each point.
+
+    Return ``None`` if the edited formula has no value there.
+    """
     try:
         return tuple(
             (next(plan.residuals(point, cells))[0] + before[0]) % field.PRIME
@@ -178,7 +181,10 @@ def _effect(
 
 
 def _means(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """Means in the place of one end, wherever they stand; alone, or beside a factor too many."""
+    """Return the correction that replaces means of two symbols by one of the symbols; ``None`` if there is none.
+
+    A superfluous factor may be removed at the same time.
+    """
     for i in indices:
         for end in mean_edits(plan.printed[i]):
             if found := _first(plan, [(i, end)]):
@@ -192,9 +198,11 @@ def _means(plan: Plan, indices: Sequence[int]) -> Remedy | None:
 
 
 def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """An edit of one cell after which nothing but a symbol is lacking, as a factor or below the line.
+    """Return a correction by an edit and one missing symbol, as a factor or in the denominator.
 
-    The symbol is told from the quotient of what the cell ought to be and what it is after the edit.
+    Return ``None`` if there is none.
+
+    The symbol is found from the quotient of the target and the edited cell.
     """
     if not isinstance(plan, Equal) or len(indices) != 1:
         return None
@@ -222,7 +230,10 @@ def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:
 def _missing_factor(
     aims: Sequence[int], values: Sequence[int], sizes: Sequence[int]
 ) -> Callable[[Node, Sym], Node] | None:
-    """How values become what they ought to be with one more factor of these sizes, point by point; if they do."""
+    """Return the function that inserts a missing factor as a factor or denominator.
+
+    Return ``None`` if neither gives the aims.
+    """
     found = list(zip(aims, values, sizes, strict=True))
     if all((aim - value * factor) % field.PRIME == 0 for aim, value, factor in found):
         return times_symbol
@@ -232,7 +243,7 @@ def _missing_factor(
 
 
 def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:
-    """Wrong entries put right one by one: by an edit, or by what ought to stand there."""
+    """Return the correction of several wrong entries, each by its own edit or by its target."""
     if len(wrong) > _MOST_ENTRIES:
         return None
     edits: list[tuple[int, Edit]] = []
@@ -245,7 +256,7 @@ def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:
 
 
 def _exchanged(plan: Plan) -> Remedy | None:
-    """Two rows, columns or entries of a matrix in each other's place, or rows for columns."""
+    """Return the correction by an exchange of two rows, columns or entries, or by transposition; otherwise ``None``."""
     printed = plan.row.printed
     if not isinstance(printed, tuple):
         return None
@@ -258,7 +269,7 @@ def _exchanged(plan: Plan) -> Remedy | None:
 
 
 def _exchanges(m: int, n: int) -> Iterator[tuple[Said, list[int]]]:
-    """What may be exchanged in a matrix, in words, with the places of its entries then."""
+    """Yield the possible exchanges in an m by n matrix: a description, and the new order of the entries."""
     place = np.arange(m * n).reshape(m, n)
     for axis, lines in enumerate(("rows", "columns")):
         for i, k in combinations(range(place.shape[axis]), 2):
@@ -282,7 +293,7 @@ def wrong_formula(
     derived: str,
     writer: Callable[[Node], str] = written,
 ) -> Said:
-    """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
+    """Return a sentence that says what is wrong: the edits, or otherwise the lacking term, or the right formula."""
     if why:
         return say("wrong_size", why)
     if remedy is None:
@@ -295,7 +306,7 @@ def wrong_formula(
 
 
 def in_words(edit: Edit, writer: Callable[[Node], str] = written) -> Said:
-    """One edit, as a clause, in which formulas are written in some notation."""
+    """Return one edit described in words, with formulas written by `writer`."""
     old, new = edit.old, edit.new
     if edit.change is Change.SIGN:
         old = old.operand if isinstance(old, Neg) else old

@@ -1,1 +1,1 @@
-"""Documents that people write, LaTeX or Markdown: their displays found, read, and drafted as a ledger."""
+"""Documents in LaTeX or Markdown: their displayed formulas are found, read, and drafted as a ledger."""

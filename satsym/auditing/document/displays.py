@@ -1,4 +1,4 @@
-"""The displayed formulas of a document, each with its number, section and place; the document's own macros."""
+"""The displayed formulas of a document, each with number, section and position, and the macros of the document."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 MAX_BYTES = 5_000_000
-"""Bytes of a document with all that it includes."""
+"""Number of bytes that a document, with all files that it includes, may have."""
 MOST_DISPLAYS = 3000
 _MOST_FILES = 200
 _MARKDOWN = (".md", ".markdown", ".qmd", ".rmd", ".txt")
@@ -24,7 +24,10 @@ _CODE = re.compile(
     r"^[ \t]*(?P<rail>```+|~~~+)(?P<kept> *\{?math\b)?.*?^[ \t]*(?P=rail)[^\n]*$|(?<![`}])`[^`\n]+`(?!`)",
     re.DOTALL | re.MULTILINE,
 )
-"""Code in Markdown; a block of mathematics is matched too, so that its end is not taken for a beginning."""
+"""Pattern of code in Markdown.
+
+Blocks of mathematics match too, so that the end of one is not taken for the beginning of the next.
+"""
 _QUOTE = re.compile(r"(?:(?<=\n\n)|(?<=\A)|(?<=\n))(?:[ \t]{0,3}>)+(?=[^\n]*(?:\n[ \t]{0,3}>|\n\n|\n?\Z))")
 _INPUT = re.compile(r"\\(?:input|include|subfile)\s*\{([^{}\n]{1,300})\}")
 _NUMBERED = "equation|align|gather|multline|eqnarray|flalign|alignat|IEEEeqnarray|dmath"
@@ -48,7 +51,7 @@ _MACRO = re.compile(
 )
 _PACKAGES = re.compile(r"\\usepackage\s*(?:\[[^\]\n]{0,200}\])?\s*\{([^{}\n]{1,300})\}")
 _KNOWN = frozenset((*ACCENTS, *MARKS, *STYLES, *KEPT_GROUPS))
-"""Macros of LaTeX that are known: what a document makes of them is how they are set, not what they mean."""
+"""Macros of LaTeX that satsym reads itself; a redefinition in the document changes only the look, and is ignored."""
 _SET = re.compile(r"\\(?:text|textrm|mathrm)\s*\{([^{}]*)\}")
 _LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
 _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100})[}`]")
@@ -58,18 +61,21 @@ _CONTINUES = re.compile(r"[\s&{}]*(?:[-+=]|\\(?:quad|qquad|times|cdot|equiv)\b)"
 _OPEN_END = re.compile(
     r"(?:[-+=]|\\(?:quad|times|cdot)|\\sum(?:[_^](?:\{[^{}]*\}|\\?\w+))*)(?:[\s&]|\\nonumber|\\notag|\\qquad)*\Z"
 )
-"""A line that asks for more."""
+"""Pattern of the end of a line after which an equation continues on the next line."""
 _RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
 _GROUP = re.compile(r"\{[^{}]*\}")
 _INDENT = 80
-"""Characters that are looked at in front of brackets: in Markdown they are escaped where others stand in the line."""
+r"""Number of characters before a display that are examined.
+
+In Markdown, brackets ``\[`` after other text on the line are escaped brackets and do not begin a display.
+"""
 _NEAR_CHARACTERS = 400
-"""Characters before a display in which what it refers to is looked for."""
+"""Number of characters before a display that are searched for references to other equations."""
 
 
 @dataclass(frozen=True)
 class Display:
-    """A displayed formula: its LaTeX, where it begins, its number or label, its section, and what it refers to."""
+    """A displayed formula: LaTeX, position, number or label, section, and labels that the text before it refers to."""
 
     text: str
     start: int
@@ -79,34 +85,34 @@ class Display:
     section: str
     refers: tuple[str, ...]
     columns: str = ""
-    """The environment whose ``&`` divide it; empty where none do."""
+    """Name of the environment if it has columns separated by ``&``, otherwise empty."""
 
 
 @dataclass
 class Source:
-    """A document with all that it includes."""
+    """A document with all files that it includes, as one text."""
 
     path: Path
     text: str = ""
     macros: dict[str, Macro] = field(default_factory=dict)
     unread: list[tuple[str, str]] = field(default_factory=list)
-    """What could not be read: its place, and why."""
+    """The parts that could not be read: place and reason of each."""
     _starts: list[tuple[int, Path, int]] = field(default_factory=list)
-    """Where a piece of a file begins in the text: the place, the file, and the line in it."""
+    """Start of each piece of a file in the text: position in the text, file, and line in the file."""
 
     def place(self, at: int) -> str:
-        """The file and line of a character."""
+        """Return file and line of a character of the text."""
         start, path, line = self._starts[bisect_right(self._starts, at, key=lambda entry: entry[0]) - 1]
         return f"{printable(str(path), 200)}:{line + self.text.count(chr(10), start, at)}"
 
 
 def read(path: Path) -> Source:
-    """Read a document and what it includes from its own folder.
+    """Read a document, and the files in its folder that it includes.
 
     Raises
     ------
     BadInput
-        If it is not text, too large, or a PDF.
+        If the document is not text, is too large, or is a PDF file.
     """
     source = Source(path)
     home = path.parent.resolve()
@@ -121,7 +127,7 @@ def read(path: Path) -> Source:
 
 
 def displays(source: Source) -> Iterator[Display]:
-    """All displays, each equation of several lines by itself, in order."""
+    """Yield all displayed formulas in order; of a display with several equations, each equation by itself."""
     text = source.text
     sections = list(_sections(text))
     within = r"\numberwithin{equation}{section}" in text.replace(" ", "")
@@ -173,7 +179,10 @@ def displays(source: Source) -> Iterator[Display]:
 
 
 def _blocks(text: str, markdown: bool) -> Iterator[tuple[re.Match[str], str]]:
-    """How displays begin, and what is in them; in linear time, also where nothing is closed."""
+    """Yield the match of the beginning and the content of each display.
+
+    In linear time even if a display is not closed.
+    """
     nearest: dict[str, tuple[int, int]] = {}
     position = 0
     while opening := _OPENING.search(text, position):
@@ -197,7 +206,7 @@ def _blocks(text: str, markdown: bool) -> Iterator[tuple[re.Match[str], str]]:
 
 
 def _columns(environment: str) -> str:
-    """The name without a star of an environment that has columns."""
+    """Return the name without star of an environment that has columns, otherwise an empty string."""
     name = environment.rstrip("*")
     return name if name.startswith(("align", "flalign", "eqnarray", "IEEE")) else ""
 
@@ -250,7 +259,7 @@ def _content(path: Path) -> str:
 
 
 def _blank_out(source: Source) -> None:
-    """Put spaces in the place of comments, and of what is printed as it stands."""
+    """Replace comments and verbatim text by spaces."""
     if source.path.suffix.lower() in _MARKDOWN:
         source.text = _QUOTE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
     patterns = (_CODE,) if source.path.suffix.lower() in _MARKDOWN else (_VERBATIM, _COMMENT)
@@ -263,7 +272,10 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None) -> str:
-    """Enter the macros of a text, and give the text without them; one that is not understood is refused where used."""
+    """Record the macros that a text defines, and return the text without the definitions.
+
+    A macro whose definition cannot be read is refused only where it is used.
+    """
     for match in _MACRO.finditer(text):
         name = next(match[kind] for kind in ("name", "def", "operator", "let", "pair", "document") if match[kind])
         end = match.end()
@@ -285,7 +297,7 @@ def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None)
 
 
 def _macro(match: re.Match[str], group: str, at: int) -> Macro:
-    """What a definition makes of a macro."""
+    """Return the macro that a definition defines."""
     body, count, default = group[1:-1], int(match["count"] or 0), match["default"]
     if match["let"]:
         body = match["same"]
@@ -307,7 +319,7 @@ def _macro(match: re.Match[str], group: str, at: int) -> Macro:
 
 
 def _closing(text: str, opening: int) -> int:
-    """The brace that closes one; the end where none does."""
+    """Return the position of the brace that closes the given one, or of the end of the text if none does."""
     depth = 0
     for match in re.finditer(r"\\.|[{}]", text[opening : opening + 20_000], re.DOTALL):
         depth += {"{": 1, "}": -1}.get(match[0], 0)
@@ -317,7 +329,7 @@ def _closing(text: str, opening: int) -> int:
 
 
 def _sections(text: str) -> Iterator[tuple[int, str, str]]:
-    """Where sections begin, with number and title."""
+    """Yield position, number and title of each section."""
     numbers = [0, 0, 0]
     for match in _SECTION.finditer(text):
         level = ("chapter", "section", "subsection").index(match[1]) if match[1] else len(match[4]) - 1
@@ -331,7 +343,7 @@ def _sections(text: str) -> Iterator[tuple[int, str, str]]:
 
 
 def _equations(body: str, environment: str) -> Iterator[tuple[int, str]]:
-    """The equations of a display, with where they begin: lines that go on with the one before belong to it."""
+    """Yield the equations of a display with their positions; a continuation line belongs to the equation before it."""
     if environment.startswith(("alignat", "IEEEeqnarray")):
         skipped = re.match(r"\s*\{[^{}]*\}", body)
         begin = skipped.end() if skipped else 0
@@ -360,7 +372,7 @@ def _equations(body: str, environment: str) -> Iterator[tuple[int, str]]:
 
 
 def _belongs(before: str, row: str) -> bool:
-    """Whether a line of a display goes on with the one before it."""
+    """Return whether a line of a display continues the equation of the line before it."""
     if not row.strip() or _OPEN_END.search(before):
         return bool(row.strip())
     relation = _RELATION.search(_GROUP.sub("", row))

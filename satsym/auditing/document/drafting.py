@@ -1,6 +1,7 @@
-"""A ledger drafted from a document, for a person to confirm: a row for each equation, and what it is held against.
+"""Draft of a ledger from a document, to be confirmed by a person: one row for each equation.
 
-A drafted row says ``draft = true``; who has confirmed it takes that line out. Reading again redoes drafts alone.
+A row states what is printed and the derived quantity that it is compared with. A drafted row contains ``draft = true``,
+a line that is removed to confirm the row. When the document is read again, only drafted rows are replaced.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ from satsym.status import BadInput
 
 SUFFIX = ".ledger.toml"
 _UNSEEN = re.compile(r"\\(?:label|tag)\*?\s*\{[^{}]*\}|(?<!\\)&|\\(?:nonumber|notag)\b")
-"""What of a display is not seen on the page."""
+"""Pattern of the parts of a display that are not visible on the page."""
 _BLOCK = re.compile(r"^\[\[row\]\]\s*$", re.MULTILINE)
 
 
 @dataclass
 class Draft:
-    """What reading a document found: the text of the ledger, its rows, and what could not be read."""
+    """Result of reading a document: the text of the ledger, its rows, and the parts that could not be read."""
 
     text: str
     rows: list[dict[str, Any]]
@@ -52,7 +53,7 @@ class Draft:
 
 @dataclass
 class _Entry:
-    """An equation of a display, understood."""
+    """An equation of a display, with its interpretation."""
 
     display: Display
     statement: Node | Equality
@@ -64,23 +65,23 @@ class _Entry:
 
 
 def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> Draft:
-    """Draft a ledger.
+    """Draft a ledger from a document.
 
     Parameters
     ----------
     path
         The document.
     model
-        ``"NAME"``, or ``"DIR/NAME"`` as seen from the ledger; that of the ledger before where it is empty.
+        ``"NAME"``, or ``"DIR/NAME"`` relative to the document; if empty, the model of the existing ledger is used.
     before
-        The text of the ledger as it is now, whose confirmed rows and notation are kept.
+        The text of the existing ledger, whose confirmed rows and notation are kept.
     let
-        What letters mean.
+        Meanings of letters, such as ``"n=omega"``.
 
     Raises
     ------
     BadInput
-        If the document cannot be read, or there is no such model.
+        If the document cannot be read, or the model does not exist.
     """
     old = _parsed(before)
     model = model or str(old.get("document", {}).get("model", ""))
@@ -100,7 +101,7 @@ def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> 
 
 
 def as_object(ledger: Path, found: Draft) -> dict[str, Any]:
-    """What JSON has of it."""
+    """Return the JSON object of a draft."""
     lists = {"unread": found.unread, "undecided": found.undecided}
     told = {name: [{"place": place, "reason": why} for place, why in entries] for name, entries in lists.items()}
     return {"ledger": str(ledger), "rows": found.rows, "kept": found.kept, **told}
@@ -121,7 +122,7 @@ def _readings(source: Source, names: Collection[str]) -> Iterator[tuple[Display,
 def _voted(
     readings: Sequence[tuple[Display, Reading]], derived: Derived, meanings: Meanings, given: Mapping[Letter, str]
 ) -> dict[Letter, str]:
-    """What letters mean that the model does not have: as most of their equations have it, right ones before others."""
+    """Return the meanings of letters unknown to the model, by a vote of the equations, weighted by verdict."""
     votes: dict[Letter, Counter[str]] = {}
     for _, reading in readings:
         if not meanings.unknown(list(reading.letters.values()), given):
@@ -156,7 +157,7 @@ def _entries(
 
 
 def _fill(entry: _Entry) -> None:
-    """The keys of the row, and the letters that it needs in the notation."""
+    """Fill in the keys of the row, and the meanings of letters that its notation needs."""
     display, subject, fit = entry.display, entry.subject, entry.answer.fit
     entry.table = {"item": display.item, **({"part": entry.part} if entry.part else {})}
     entry.table |= {"kind": "equation", "where": ", ".join(filter(None, (display.section, display.place)))}
@@ -208,7 +209,7 @@ def _fill_matrix(entry: _Entry) -> None:
 
 
 def _derivative(tree: Node, subject: Subject) -> str:
-    """A partial derivative of something that has an address, as a ledger has it; else empty."""
+    """Return a partial derivative of a quantity that has an address, in the form used in ledgers; otherwise empty."""
     if not isinstance(tree, Call) or tree.function != "diff" or not all(isinstance(a, Sym) for a in tree.arguments):
         return ""
     readings, meaning = subject.reading.letters, subject.given
@@ -219,7 +220,7 @@ def _derivative(tree: Node, subject: Subject) -> str:
 
 
 def _of_output(letter: Letter | None, guess: Guess, subject: Subject) -> str:
-    """An output, or a rate that the model has no name for, as a ledger has it; else empty."""
+    """Return an output, or the unnamed rate of a state, in the form used in ledgers; otherwise empty."""
     derived = subject.derived
     name = (guess.meaning.get(letter.still) or subject.meanings.named(letter.still) or "") if letter else ""
     address, times = f"{derived.record.name}:{record.DECLARED}.{name}", letter.dots if letter else 0
@@ -235,7 +236,7 @@ def _of_output(letter: Letter | None, guess: Guess, subject: Subject) -> str:
 
 
 def _called(tree: Node, k: int) -> str:
-    """A name for a derivative that is one letter in the row, such as dH_dr."""
+    """Return the name of a derivative that is one letter in the row, such as dH_dr."""
     parts = [tree]
     while isinstance(parts[-1], Call):
         parts.append(parts[-1].arguments[0])
@@ -246,7 +247,10 @@ def _called(tree: Node, k: int) -> str:
 
 
 def _propose_origins(entries: Sequence[_Entry], derived: Derived) -> None:
-    """How a row follows from one that is referred to just before it, where a derivative, or the row itself, does it."""
+    """Propose how each row follows from an equation that the text just before it refers to.
+
+    A proposal is made only if the row equals the other equation or is a derivative of it.
+    """
     by_label = {entry.display.label: entry for entry in entries if entry.display.label and entry.table.get("holds")}
     for entry in entries:
         if not entry.table.get("holds") or entry.table["kind"] != "equation":
@@ -299,7 +303,7 @@ def _parsed(before: str) -> dict[str, Any]:
 
 
 def _scope_letters(old: Mapping[str, Any], derived: Derived) -> dict[Letter, str]:
-    """What the notation of the ledger before says letters mean."""
+    """Return the meanings of letters that the notation of the existing ledger states."""
     scope = old.get("scope", {}).get("main", {})
     found = {}
     for name, meaning in scope.items() if isinstance(scope, dict) else ():
@@ -367,14 +371,14 @@ def _head(path: Path, model: str, before: str, old: Mapping[str, Any], letters: 
 
 
 def _other_scope(letters: Mapping[str, str], old: Mapping[str, Any]) -> str:
-    """The notation of rows in which a letter means something else than in most."""
+    """Return the notation of the rows in which a letter has another meaning than in most rows."""
     known = old.get("scope", {}).get("rates", {})
     lines = [f"{name} = {_toml(meaning)}" for name, meaning in letters.items() if name not in known]
     return "\n".join(["\n[scope.rates]", 'extends = "main"', *lines]) + "\n" if lines and not known else ""
 
 
 def _block(entry: _Entry) -> str:
-    """A row; one that is not understood stands in a remark, to be completed by hand."""
+    """Return the text of a row; a row that is not understood becomes a comment, to be completed by hand."""
     shown = " ".join(_UNSEEN.sub(" ", entry.display.text).split())[:300]
     lines = [f"{key} = {_toml(value)}" for key, value in entry.table.items() if key != "original"]
     capitals = [one for one in entry.subject.reading.products if one in entry.answer.letters]

@@ -1,1 +1,1 @@
-"""Judging rows: what is printed against what is derived, one file a kind."""
+"""Judgement of rows by comparing what is printed with what is derived, in one module for each kind of row."""

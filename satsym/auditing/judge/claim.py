@@ -1,4 +1,7 @@
-"""Claims: whether the proposition of a row is true, whether its reason is, and what brings it about where it is not."""
+"""Judgement of claims: whether the proposition of a row is true, and whether the reason that it gives is true.
+
+If the proposition is false, it is also judged what else the row names as its origin.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ from satsym.wording import refuse_unknown, shown
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
-    """The outcome of a row that a proposition judges."""
+    """Return the outcome of a row that states a proposition."""
     assert row.claims is not None
     pages = Pages(bench, row)
     found = pages.answer(row.claims)
@@ -47,13 +50,16 @@ def judge(bench: Bench, row: Row) -> Outcome:
 
 
 class Pages:
-    """The document as a proposition of one of its rows sees it."""
+    """The document in which the proposition of a row looks up other rows, texts and symbols."""
 
     def __init__(self, bench: Bench, row: Row) -> None:
         self._bench, self._row = bench, row
 
     def answer(self, proposition: Proposition) -> Answer:
-        """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
+        """Return whether a proposition is true.
+
+        The answer is cached if the proposition does not depend on the document.
+        """
         if proposition.stands_alone:
             return _alone(proposition.text)
         try:
@@ -66,7 +72,7 @@ class Pages:
             return Answer(None, (str(error),))  # letters that stand there may make no sense
 
     def explained(self) -> Said:
-        """The sentence for people, with what its terms measure."""
+        """Return the explanation for readers, with the values of its terms filled in."""
         return Said(self._filled(self._row.why, str), self._filled(self._row.why_id, property_in_indonesian))
 
     def _filled(self, why: tuple[str | Proposition, ...], written: Callable[[str], str]) -> str:
@@ -80,7 +86,7 @@ class Pages:
         return Evaluation(words, lookups, _listed(self._row.table.printed))
 
     def row(self, key: str) -> Any:
-        """The printed formula of a row in our names; of an equality the right-hand side."""
+        """Return the printed formula of a row in the names of the models, for an equation its right-hand side."""
         refuse_unknown("there is no row", key, self._bench.rows)
         other = self._bench.rows[key]
         if other.printed is None:
@@ -88,19 +94,19 @@ class Pages:
         return _exact(self._bench.of_row(other))
 
     def text(self, key: str) -> Any:
-        """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
+        """Return the printed text of a row, or of all rows whose keys begin alike if the key ends in a star."""
         found = [_listed(row.table.printed) for name, row in self._bench.rows.items() if matching(key)(name)]
         if not found:
             refuse_unknown("there is no row", key, self._bench.rows)
         return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:
-        """What a symbol of the notation means."""
+        """Return the meaning of a symbol of the notation."""
         _, engine = self._bench.engines(self._row)
         return _exact(engine.value(self._bench.scope(self._row).meanings[name]))
 
     def meanings(self, letter: str) -> list[str]:
-        """What the document uses a letter for; one that stands in no notation is unknown."""
+        """Return all meanings of a letter in the notations of the document; a letter without meaning is an error."""
         scopes = self._bench.ledger.scopes
         found = {scope.meanings[letter] for scope in scopes.values() if letter in scope.meanings}
         if not found:

@@ -1,4 +1,4 @@
-"""Equations and matrices: compared with what is derived, diagnosed where they differ, their dimensions checked."""
+"""Judgement of equations and matrices: comparison with what is derived, diagnosis, and check of dimensions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from satsym.symbolic.lookup import library
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
-    """Judge an equation or a matrix by itself."""
+    """Return the outcome of an equation or matrix, without regard to the rows that it follows from."""
     assert row.printed is not None
     ways = plans(bench, row, row.printed, bench.target(row))
     fault = dimension_fault(bench, row)
@@ -38,7 +38,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
 
 
 def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
-    """The right formula as text: that of the cells, else the target in the document's symbols."""
+    """Return the right formula as text, composed of the given cells or otherwise of the targets."""
     row = compared.row
     if cells is None:
         cells = tuple(compared.bench.theirs(row, target) for target in compared.targets)
@@ -55,12 +55,12 @@ def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
 
 
 def in_rows(lines: Iterable[tuple[Node, ...]]) -> str:
-    """A matrix as text."""
+    """Return a matrix as text."""
     return written(Grid(tuple(map(Grid, lines))))
 
 
 def corrected(outcome: Outcome) -> Formula:
-    """What the row ought to print, in our names."""
+    """Return the formula that the row ought to print, in the names of the models."""
     compared, row = outcome.plan, outcome.row
     assert compared is not None
     scope = compared.bench.scope(row)
@@ -75,7 +75,7 @@ def corrected(outcome: Outcome) -> Formula:
 
 
 def dimension_fault(bench: Bench, row: Row) -> Said:
-    """Why a printed formula is not homogeneous; empty where it is, or where that is not known."""
+    """Return why a printed formula is not dimensionally homogeneous; empty if it is, or if that is not known."""
     if isinstance(row.printed, tuple):
         return Said("")  # the entries of a matrix have dimensions of their own
     try:
@@ -87,7 +87,7 @@ def dimension_fault(bench: Bench, row: Row) -> Said:
 
 
 def _target_fault(bench: Bench, compared: Plan) -> bool:
-    """Whether what is held against is not homogeneous either, as where a length was put to one."""
+    """Return whether the target is not homogeneous either, e.g. because a length was set to one."""
     if not isinstance(compared, Equal | Multiple):
         return True
     exact = [bench.plain_expression(target) for target in compared.targets]

@@ -1,4 +1,4 @@
-"""Numbers and units: recomputed with what the document states, and compared with the printed digits."""
+"""Judgement of numbers with units: recomputed from the values in the document, compared with the printed digits."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas, library
 
 _CGS = {"N": "dyn", "J": "erg", "m": "cm", "kg": "g"}
-"""Names of units of the system of centimetre, gram and second for those of today's."""
+"""Names of SI units -> the corresponding units of the centimetre-gram-second system."""
 _CGS_NAMES = re.compile(rf"\b({'|'.join(_CGS)})\b")
 _ZEROS = 6
-"""Digits that claim nothing and are written all the same, before a power of ten is."""
+"""Number of zeros up to which a number is written out rather than with a power of ten, though zeros claim nothing."""
 
 
 def number(bench: Bench, row: Row) -> Outcome:
-    """Judge a printed number."""
+    """Return the outcome of a row that prints a number."""
     printed = quantities.printed_number(str(row.table.printed))
     tree = row.holds
     assert tree is not None
@@ -66,7 +66,7 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
 
 
 def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str], scale: float) -> str:
-    """The customary value of a constant with which the printed digits come out, in words; empty if none does."""
+    """Return the customary value of a constant that reproduces the printed digits, in words; empty if none does."""
     for name in sorted(symbols(tree) - inputs.keys()):
         for text in CUSTOMARY.get(name, ()):
             found = quantities.evaluated(tree, {**inputs, name: text}).value / scale
@@ -76,7 +76,7 @@ def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[st
 
 
 def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str]) -> bool:
-    """Whether the printed digits are those of another unit."""
+    """Return whether the printed digits are correct in another unit."""
     scale = quantities.one(unit).value
     found = quantities.evaluated(tree, inputs).value / scale
     return fit_of_range(found, found, printed) is Fit.INSIDE or bool(_customary(printed, tree, inputs, scale))
@@ -98,7 +98,7 @@ def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome
 
 
 def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
-    """The value with one digit more than is printed."""
+    """Return the value as text, with one digit more than is printed."""
     step = printed.half_unit * 2 / 10
     if step >= 1:
         digits = len(str(int(abs(value) / step)))
@@ -110,7 +110,7 @@ def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
 
 
 def unit(bench: Bench, row: Row) -> Outcome:
-    """Judge a printed unit by its dimension."""
+    """Return the outcome of a row that prints a unit, judged by its dimension."""
     text = str(row.table.printed).strip()
     printed = {base: Fraction(power) for base, power in units.dimension(text).items()} if text not in ("", "1") else {}
     assert row.holds is not None

@@ -1,1 +1,1 @@
-"""Reading of mathematics as people typeset or type it: LaTeX, and plain notation. Nothing is ever evaluated."""
+"""Parser of mathematics in LaTeX or plain notation. Formulas are translated into trees and never executed."""

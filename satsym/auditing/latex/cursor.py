@@ -1,4 +1,4 @@
-"""Going through the tokens of one side of an equation."""
+"""Base of the parsers that read the tokens of one side of an equation from left to right."""
 
 from __future__ import annotations
 
@@ -14,39 +14,39 @@ from satsym.formula.tree import Equality, Node
 from satsym.wording import printable
 
 CONSTANT = "constant"
-"""What is equated with this does not change in time."""
+"""Name of a constant of unspecified value: a quantity equated with it does not change in time."""
 
 
 @dataclass
 class Reading:
-    """What was read: equations and expressions, and how each name is printed."""
+    """Result of reading a formula: equations and expressions, and the printed letter of each name."""
 
     statements: list[Node | Equality]
     letters: dict[str, Letter] = field(default_factory=dict)
-    """Name -> the letter that it stands for."""
+    """Name -> the printed letter."""
     places: dict[str, set[str]] = field(default_factory=dict)
-    """Name -> where it is printed as taken, time apart: letters that it is a function of, or places."""
+    """Name -> the arguments with which the letter is printed, apart from time."""
     known: dict[str, set[str]] = field(default_factory=dict)
-    """Names and places that were found when the formula was read a first time."""
+    """Value of `places` after a first reading of the formula."""
     differential: int = -1
-    """Where a differential stands that is no part of a derivative or of an integral; -1 where none does."""
+    """Position of a differential that belongs to no derivative or integral; -1 if there is none."""
     constants: bool = False
-    """Whether something is said to be constant."""
+    """Whether the formula states that a quantity is constant."""
     products: list[str] = field(default_factory=list)
-    """Capitals side by side that are read as products, and could be names."""
+    """Adjacent capitals that were read as products, but could be names."""
 
 
 class Cursor(ABC):
-    """The tokens of one side of an equation, and the place up to which they are read.
+    """Tokens of one side of an equation, with the position up to which they are read.
 
     Parameters
     ----------
     found
         The tokens.
     reading
-        Where the letters are entered.
+        The result, in which letters are recorded.
     start
-        The place of the first character of the formula.
+        Position of the first character of the formula.
     """
 
     def __init__(self, found: Sequence[Token], reading: Reading, start: int, depth: int = 0) -> None:
@@ -54,32 +54,32 @@ class Cursor(ABC):
         self._i = 0
 
     def _of(self, part: Sequence[Token]) -> Self:
-        """A cursor of its own for a part."""
+        """Return a new cursor for a part of the tokens, one level deeper."""
         return type(self)(part, self._reading, self._start, self._depth + 1)
 
     @abstractmethod
     def _inner(self, part: Sequence[Token], at: int) -> Node:
-        """What a part is, read as a whole."""
+        """Return the tree of a part of the tokens, read completely."""
 
     @abstractmethod
     def _sum(self) -> Node:
-        """Read the sum that is next."""
+        """Read the next sum."""
 
     @abstractmethod
     def _product(self, argument: bool = False) -> Node:
-        """Read the term that is next."""
+        """Read the next term."""
 
     @abstractmethod
     def _factor(self) -> Node:
-        """Read the factor that is next."""
+        """Read the next factor."""
 
     @abstractmethod
     def _signed_factor(self) -> Node:
-        """Read the factor that is next, which may have a sign."""
+        """Read the next factor, which may have a sign."""
 
     @abstractmethod
     def _bracket(self) -> Node:
-        """Read what stands in the bracket that is next."""
+        """Read the contents of the next bracket."""
 
     @abstractmethod
     def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
@@ -87,11 +87,11 @@ class Cursor(ABC):
 
     @abstractmethod
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
-        """Read what stands below a bar: where something is taken."""
+        """Read the subscript of a vertical bar, the point at which an expression is evaluated."""
 
     @abstractmethod
     def _begins_factor(self, token: Token) -> bool:
-        """Tell whether a factor begins with a token."""
+        """Return whether a factor can begin with a token."""
 
     def _peek(self, ahead: int = 0) -> Token | None:
         place = self._i + ahead
@@ -121,7 +121,7 @@ class Cursor(ABC):
         raise Unread(f'"{sign}{printable(token.text)}" is not supported here', token.at)
 
     def _script(self) -> list[Token]:
-        """What stands behind ``^`` or ``_``."""
+        """Read the subscript or superscript after ``^`` or ``_``."""
         token = self._take()
         if token.kind == "open":
             end = group_end(self._found, self._i - 1)
@@ -141,11 +141,11 @@ class Cursor(ABC):
         return [token]
 
     def _script_end(self) -> int:
-        """The place behind the script whose sign is next."""
+        """Return the position after the next subscript or superscript."""
         return group_end(self._found, self._i + 1) if self._is("{", 1, "open") else self._i + 2
 
     def _group(self, braces: bool = False) -> list[Token]:
-        """The argument of a macro: a group, or a single token."""
+        """Read the argument of a macro, which is a group in braces or a single token."""
         token = self._take()
         if token.kind != "open":
             if token.kind == "number" and len(token.text) > 1 and "." not in token.text:
@@ -167,7 +167,7 @@ class Cursor(ABC):
         return list(self._found[self._i + 2 : group_end(self._found, self._i + 1) - 1])
 
     def _bracket_end(self) -> int:
-        """Go behind the bracket that closes the one that is next; its place."""
+        """Move past the bracket that closes the next opening bracket, and return its position."""
         opening, depth = self._take(), 1
         groups = 0
         while depth:

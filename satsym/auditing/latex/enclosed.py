@@ -1,4 +1,4 @@
-"""What stands between signs: braces, bars, cases, places below a bar, and indices in front of a letter."""
+"""Reading of what is enclosed by signs: braces, bars, cases, points of evaluation, and indices before a letter."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from satsym.formula.tree import Add, Call, Grid, Node, Pow, Sym, Text, constant,
 
 
 class EnclosedCursor(RefusalCursor):
-    """Reads what signs enclose."""
+    """Parser of the expressions that signs enclose."""
 
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
-        """What is taken at a place that stands below a bar."""
+        """Return an expression evaluated at the point that is written below a bar."""
         places: list[Node] = []
         for part in split(script, lambda t: t.text in ",;"):
             line = relation_in(part)
@@ -32,7 +32,7 @@ class EnclosedCursor(RefusalCursor):
         return Call("value", (base, *places))
 
     def _is_transform(self, base: Node) -> bool:
-        r"""Whether braces, or square ones, follow a letter that is set as one of an operator, ``\mathcal{L}^{-1}``."""
+        r"""Return whether braces or square brackets follow a letter typeset as an operator, ``\mathcal{L}^{-1}``."""
         stem = base.base if isinstance(base, Pow) else base
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         operator = letter is not None and letter.style == "cal" and letter.base in words.TRANSFORMS
@@ -44,7 +44,7 @@ class EnclosedCursor(RefusalCursor):
         )
 
     def _transform(self, base: Node) -> Node:
-        """What a transform, or a mean, is of."""
+        """Read the argument of a transform or mean."""
         opening = self._take()
         begin = self._i
         if opening.text == "[":
@@ -53,7 +53,7 @@ class EnclosedCursor(RefusalCursor):
         return Call("transform", (base, self._inner(self._braced(), opening.at)))
 
     def _braced(self) -> Sequence[Token]:
-        """What stands in printed braces, or angular brackets, the first of which was taken."""
+        """Return the tokens within braces or angle brackets, after the opening one was read."""
         begin, depth = self._i, 1
         while depth:
             inside = self._take()
@@ -61,7 +61,7 @@ class EnclosedCursor(RefusalCursor):
         return self._found[begin : self._i - 1]
 
     def _in_a_frame(self) -> Node:
-        """A letter in front of which its frame is printed, ``{}^A r``: components in that frame."""
+        """Read a letter with its reference frame printed before it, ``{}^A r``: components in this frame."""
         at, said = self._found[self._i].at, []
         while self._is("^") or self._is("_"):
             self._i += 1
@@ -74,7 +74,10 @@ class EnclosedCursor(RefusalCursor):
         return self._symbol(replace(letter, marks=(*letter.marks, f"in_{'_'.join(said)}")), at)
 
     def _named(self, macro: str, word: str, length: int) -> Node | None:
-        """A function that is printed upright with its brackets, and is only known by name."""
+        """Read a function of unknown meaning whose name is printed upright, followed by brackets.
+
+        Otherwise ``None``.
+        """
         begin, behind = self._i, self._i + 1 + length + 2 * self._is("{", 1, "open")
         known = word in words.UNKNOWN or (macro == "operatorname" and word not in words.OPTIMA)
         if not known or word in FUNCTIONS or not word.isalpha() or behind >= len(self._found):
@@ -91,7 +94,7 @@ class EnclosedCursor(RefusalCursor):
         return Call(word, tuple(arguments))
 
     def _upright(self, token: Token) -> Node | None:
-        """A function, or a word, that is set upright; ``None``, with nothing taken, for a letter."""
+        """Read a function or word that is printed upright; ``None``, with nothing read, for a letter."""
         group = self._peek_group()
         word = "".join(t.text for t in group)
         behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
@@ -117,14 +120,14 @@ class EnclosedCursor(RefusalCursor):
         return None
 
     def _called(self, name: str) -> Node | None:
-        """A function that is only known by name, with its brackets or the letter behind it."""
+        """Read a function of unknown meaning with its argument, in brackets or a single letter."""
         if self._is("("):
             return Call(name, tuple(self._arguments()))
         letter = self._letter()
         return Call(name, (self._symbol(letter, self._found[self._i - 1].at),)) if letter else None
 
     def _unit(self, last: Node) -> Node | None:
-        """The unit behind a number, which is set upright; ``None``, with nothing taken, where none is next."""
+        """Read the upright unit after a number; ``None``, with nothing read, if there is no unit."""
         begin, said = self._i, ""
         numeric = constant(last) is not None or (isinstance(last, Call) and last.function == "power")
         while numeric and (token := self._peek()) is not None:
@@ -145,7 +148,7 @@ class EnclosedCursor(RefusalCursor):
         return None
 
     def _braces(self, token: Token) -> Node:
-        """What stands in printed braces, or in angular brackets: a mean, or an inner product."""
+        """Read the contents of braces, or of angle brackets, which denote a mean or an inner product."""
         parts = split(self._braced(), lambda t: t.kind == "sign" and t.text in ",;")
         if token.text == "langle":
             return Call("angled", tuple(self._inner(part, token.at) for part in parts))
@@ -154,7 +157,7 @@ class EnclosedCursor(RefusalCursor):
         return self._inner(parts[0], token.at)
 
     def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
-        """Values, each with the condition under which it is taken."""
+        """Read values, each with the condition under which it applies."""
         found: list[Node] = []
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text in "&,")
@@ -178,7 +181,7 @@ class EnclosedCursor(RefusalCursor):
         return Call("cases", tuple(found))
 
     def _size(self, token: Token) -> Node:
-        """Between bars: the size of a number, or of a vector."""
+        """Read an expression between bars: absolute value, norm or determinant."""
         closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
         begin, groups = self._i, 0
         while True:

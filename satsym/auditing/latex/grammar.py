@@ -1,7 +1,7 @@
-r"""The closed grammar of printed formulas: tokens -> trees. What is not in it is refused, with its place.
+r"""The grammar of printed formulas, which turns tokens into trees and refuses all other input with its position.
 
-A product may be written without a sign; what a function is taken of may stand without brackets (``\sin 2\theta``); a
-letter may be a function of time (``x(t)``); derivatives are printed as dots, quotients or partial quotients.
+Products may be written without a sign, arguments of functions without brackets (``\sin 2\theta``), letters as functions
+of time (``x(t)``), and derivatives as dots, quotients or partial quotients.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
     Parameters
     ----------
     found
-        Its tokens.
+        The tokens of the formula.
     text, start
-        What they were made of, and the place of its first character: how letters are printed is taken from there.
+        The text of the tokens, and the position of its first character in the document.
     names
-        Names of several letters that are known, and may be printed without being set upright.
+        Known names of several letters, which need not be printed upright.
 
     Raises
     ------
     Unread
-        At the first thing that is not in the grammar.
+        At the first part that does not belong to the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
     reading = _read(kept, Reading([]), start)
@@ -88,31 +88,31 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
 
 
 def _stands_in(name: Node, tree: Node) -> bool:
-    """Whether a name is a factor or a term of a tree; what a derivative is of, or by, is another matter."""
+    """Return whether a name is a factor or term of a tree, apart from derivatives."""
     if isinstance(tree, Call) and tree.function in ("diff", "d", "value", *words.NOT_COMPARED):
         return False
     return tree == name or any(_stands_in(name, part) for part in children(tree))
 
 
 class Parser(SumCursor):
-    """Reads one side of an equation."""
+    """Parser of one side of an equation."""
 
     def side(self) -> Node:
-        """The whole side, which may be a list."""
+        """Read the whole side, which may be a list."""
         parts = split(self._found, lambda token: token.kind == "sign" and token.text == ",")
         if len(parts) < 2:
             return self.whole()
         return Call("list", tuple(self._inner(part, self._start) for part in parts))
 
     def whole(self) -> Node:
-        """The whole side."""
+        """Read the whole side as one expression."""
         tree = self._sum()
         if self._i < len(self._found):
             self._refuse()
         return tree
 
     def _product(self, argument: bool = False) -> Node:
-        """A term; of a function without brackets, what it is taken of."""
+        """Read a term, or with `argument` the argument of a function without brackets."""
         chain, crossed = [self._signed_factor()], ""
         while (token := self._peek()) is not None:
             text, sign, macro = token.text, token.kind == "sign", token.kind == "macro"
@@ -150,7 +150,7 @@ class Parser(SumCursor):
         return product_of(chain)
 
     def _times(self, sign: Token, chain: list[Node], crossed: str) -> str:
-        """Read what a sign of multiplication is in front of, into a product; which product of vectors was last."""
+        """Read the right operand of a multiplication sign into a product, and return the last vector product."""
         self._i += 1
         before, product = chain[-1], words.OF_VECTORS.get(sign.text)
         if product and self._is_vector(before):
@@ -168,7 +168,7 @@ class Parser(SumCursor):
         return "number" if sign.text == "times" and scalar else crossed
 
     def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
-        """A product divided by the factor behind a slash."""
+        """Read the divisor after a slash, and return the quotient."""
         if self._bare_end == self._i:
             raise Unread("the argument of a function in front of a slash needs brackets", slash.at)
         self._i += 1
@@ -202,7 +202,10 @@ class Parser(SumCursor):
         return any(token.text in names for names in known) or token.text in ATOMS
 
     def _factor(self) -> Node:
-        """One factor with its powers; everything that nests is read by factors, so that depth is counted here."""
+        """Read a factor with its powers.
+
+        Every nested part of a formula is read by this function, which therefore counts the depth.
+        """
         self._depth += 1
         if self._depth > MAX_DEPTH:
             at = self._found[min(self._i, len(self._found) - 1)].at
@@ -259,7 +262,7 @@ class Parser(SumCursor):
                 return base
 
     def _indices_of(self, script: Sequence[Token], at: int) -> Node:
-        """The index of something in brackets: one expression, or several, such as those of an entry of a matrix."""
+        """Read the index of a bracket, which is one expression or several, e.g. those of a matrix entry."""
         letters = all(t.kind == "letter" for t in script)
         parts = [[t] for t in script] if letters else split(script, lambda t: t.kind == "sign" and t.text == ",")
         indices = [self._inner(part, at) for part in parts]
@@ -394,4 +397,4 @@ _READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
     **dict.fromkeys(words.INTEGRALS, Parser._integral),
     **dict.fromkeys(words.OPENING, Parser._braces),
 }
-"""Macros that begin something, and what reads it."""
+"""Macros that begin a construct -> the function that reads it."""

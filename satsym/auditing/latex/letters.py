@@ -1,4 +1,4 @@
-"""Printed letters with what they wear: index, dots, hat, star. Each has a name of the safe language."""
+"""Printed letters with index, dots, hat and star, each of which has a name in the language of ledgers."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ GREEK = frozenset(
     "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell hbar "
     "imath jmath varGamma varDelta varTheta varLambda varXi varPi varSigma varUpsilon varPhi varPsi varOmega".split()
 )
-"""Letters that are macros."""
+"""Letters that are printed by a macro."""
 
 
 @dataclass(frozen=True)
 class Letter:
     """A letter as it is printed.
 
-    ``base`` is the letter itself (``x``, ``omega``, ``varphi``); ``style`` says ``cal`` or ``vector`` where it is set
-    so; ``index`` is its foot, ``marks`` what it wears otherwise (``hat``, ``star``, ``max``), ``dots`` how often it is
-    differentiated by time, ``before`` a variation sign in front.
+    ``base`` is the letter itself (``x``, ``omega``, ``varphi``), ``style`` is ``cal`` or ``vector`` for script and bold
+    letters, ``index`` is the subscript, ``marks`` are other decorations (``hat``, ``star``, ``max``), ``dots`` is the
+    order of the time derivative, and ``before`` is a sign of variation before the letter.
     """
 
     base: str
@@ -35,11 +35,11 @@ class Letter:
     marks: tuple[str, ...] = ()
     before: str = ""
     foot: str = field(default="", compare=False)
-    """The index in LaTeX."""
+    """The subscript in LaTeX."""
 
     @property
     def name(self) -> str:
-        """A name of the safe language; the same for letters that look the same."""
+        """Name in the language of ledgers, the same for letters that look the same."""
         stem = self.base
         if self.index:
             stem += self.index if self.index[0].isdigit() and "_" not in stem and len(stem) == 1 else f"_{self.index}"
@@ -52,7 +52,7 @@ class Letter:
 
     @property
     def latex(self) -> str:
-        """How it is typeset."""
+        """The letter in LaTeX."""
         found = _in_tex(self.base)
         for style in filter(None, self.style.split("_")):
             found = rf"\{_STYLES[style]}{{{found}}}"
@@ -73,26 +73,26 @@ class Letter:
 
     @property
     def still(self) -> Letter:
-        """The letter without its dots."""
+        """The letter without dots."""
         return replace(self, dots=0)
 
     @property
     def bold(self) -> bool:
-        """Whether it is set as a vector."""
+        """Whether the letter is typeset as a vector."""
         return "vector" in self.style
 
     def dotted(self, times: int = 1) -> Letter | None:
-        """Its derivative by time; ``None`` beyond the fourth."""
+        """Return the time derivative of the letter; ``None`` above the fourth order."""
         return replace(self, dots=self.dots + times) if self.dots + times < len(_DOTS) else None
 
     @property
     def plain(self) -> Letter:
-        """The letter with its index and dots alone."""
+        """The letter with only its index and dots."""
         return replace(self, style="", marks=())
 
 
 def of_word(word: str) -> Letter:
-    """The letter that a name in plain notation means: ``x_ddot``, ``lambda_x``, ``u1_star``, ``d_x``."""
+    """Return the letter of a name in plain notation, such as ``x_ddot``, ``lambda_x``, ``u1_star`` or ``d_x``."""
     dots, rest = 0, word
     for count in (2, 1):
         if rest.startswith(f"{'d' * count}_") and len(rest) > count + 1:
@@ -114,17 +114,17 @@ def of_word(word: str) -> Letter:
 
 
 def _in_tex(word: str) -> str:
-    """A letter or a word as part of a formula."""
+    """Return a letter or word in LaTeX."""
     if word in GREEK:
         return rf"\{word}"
     return word if len(word) == 1 or word.isdigit() else rf"\mathrm{{{word}}}"
 
 
 def is_name(text: str) -> bool:
-    """Whether a text may stand as a name."""
+    """Return whether a text may be used as a name."""
     return len(text) <= MAX_NAME and NAME.match(text) is not None
 
 
 def cleaned(text: str) -> str:
-    """An index as part of a name: words and numbers between single underscores."""
+    """Return an index as part of a name, with single underscores between words and numbers."""
     return "_".join(re.findall(r"[A-Za-z0-9]+", text))

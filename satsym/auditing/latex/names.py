@@ -1,4 +1,4 @@
-"""Letters side by side: names that are known, products, and what may be either."""
+"""Interpretation of adjacent letters as known names or as products; ambiguous ones are refused."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
 from satsym.formula.tree import Pow, Sym, cells, walk
 
 _LONG_WORD = 5
-"""Letters side by side, vowels among them, that are taken for a word."""
+"""Number of adjacent letters, including vowels, from which they are read as a word."""
 _GROUPS = frozenset("Re Fr Pr Nu Pe We Ro Kn St Bi Bo Sc Sh".split())
-"""Names of numbers without a dimension that are printed as two letters."""
+"""Names of dimensionless numbers that are printed as two letters."""
 _SIGNS = frozenset(("cdot", "*"))
-"""Who sets these beside letters that stand side by side does not multiply the letters."""
+"""Multiplication signs: an author who writes them next to adjacent letters does not mean a product of these letters."""
 
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
-    """Where letters stand side by side, without spaces: places of the first one and behind the last."""
+    """Yield the positions of runs of adjacent letters, as first position and position after the last letter."""
     begin = 0
     for k in range(1, len(found) + 1):
         before, token = found[k - 1], found[k] if k < len(found) else found[0]
@@ -29,7 +29,7 @@ def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
 
 
 def with_names(found: list[Token], names: Collection[str]) -> list[Token]:
-    """The tokens, letters that spell a known name set upright."""
+    """Return the tokens with letters that spell a known name set upright."""
     for begin, end in reversed(list(_runs(found))):
         if "".join(t.text for t in found[begin:end]) in names:
             at = found[begin].at
@@ -39,7 +39,10 @@ def with_names(found: list[Token], names: Collection[str]) -> list[Token]:
 
 
 def capitals(found: Sequence[Token]) -> list[str]:
-    """Capitals side by side none of which stands by itself elsewhere: products, unless they are names."""
+    """Return runs of adjacent capitals of which none occurs elsewhere on its own.
+
+    They are products unless they are names.
+    """
     runs: dict[str, None] = {}
     for begin, end in _runs(found):
         if begin and found[begin - 1].text in ("^", "_"):  # the first one is an index in front of the others
@@ -54,7 +57,7 @@ def capitals(found: Sequence[Token]) -> list[str]:
 
 
 def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
-    """Refuse what is a name or a product: capitals side by side that are defined, or in front of a number: SO(3)."""
+    """Refuse adjacent capitals that could be a name or a product, as in ``SO(3)`` or on the left of a definition."""
     for part in line:
         unit = [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS
         if unit and part[1].at > part[0].at + len(part[0].text) + 1:  # set apart
@@ -96,7 +99,7 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
 
 
 def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:
-    r"""Whether capitals are divided by others, one of them the same, as lengths are: ``\frac{AB}{AC}``."""
+    r"""Return whether a run of capitals is divided by one with a common letter, as for lengths, ``\frac{AB}{AC}``."""
     above, between = {t.text for t in part[first:last]}, [t.kind for t in part[last : last + 2]]
     below = next((part[a:b] for a, b in _runs(part) if a == last + 2), [])
     whole = first > 1 and part[first - 2].text in ("frac", "tfrac", "dfrac") and between == ["close", "open"]
@@ -104,7 +107,7 @@ def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:
 
 
 def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
-    """Refuse powers of a letter of which other exponents, 0 and 1, are indices."""
+    """Refuse powers of a letter whose superscripts 0 and 1 are indices."""
     numbered = {name.rpartition("_upper_")[0] for name in reading.letters if name.endswith(("_upper_0", "_upper_1"))}
     for statement in reading.statements if numbered else ():
         for side in cells(statement):

@@ -1,4 +1,4 @@
-"""Functions, roots, powers, sums, integrals, brackets and environments of printed formulas: tokens -> trees."""
+"""Reading of functions, roots, powers, sums, integrals, brackets and environments of printed formulas."""
 
 from __future__ import annotations
 
@@ -17,13 +17,16 @@ from satsym.wording import printable
 
 
 class OperatorCursor(QuotientCursor):
-    """Reads what is applied to the terms behind it."""
+    """Parser of operators that apply to the terms after them."""
 
     _bare_end = -1
-    """Where what a function is taken of ended, if it stands without brackets."""
+    """Position of the end of the last function argument without brackets; -1 if there was none."""
 
     def _peek_number(self) -> Node | None:
-        """A number that is set as a vector, such as a bold zero; ``None``, with nothing taken, where none is next."""
+        """Read a number that is printed bold, such as a zero vector.
+
+        Return ``None``, with nothing read, if there is no such number.
+        """
         begin, found = self._i, self._found
         inside = self._group() if self._peek() else []
         if len(inside) == 1 and inside[0].kind == "number":
@@ -35,7 +38,7 @@ class OperatorCursor(QuotientCursor):
         return None
 
     def _gradient(self, token: Token) -> Node:
-        """A gradient: what it is of, and by which letter, where that is printed."""
+        """Read the argument of a gradient, and the letter with respect to which it is taken if that is printed."""
         scripts = self._limits()
         by = [self._inner(scripts["_"], token.at)] if "_" in scripts else []
         if "^" in scripts:
@@ -51,7 +54,7 @@ class OperatorCursor(QuotientCursor):
         return Call("gradient", (self._factor(), *by))
 
     def _optimum(self, token: Token) -> Node:
-        """A limit, or what is least or greatest: of what follows, over what stands below."""
+        """Read a limit, minimum or maximum of the following expression over the subscript."""
         below = self._limits().get("_", [])
         while below and below[0].kind == "open" and group_end(below, 0) == len(below):
             below = below[1:-1]
@@ -192,14 +195,14 @@ class OperatorCursor(QuotientCursor):
         return arguments[0]
 
     def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
-        """Whether a bracket that was gone past is no vector: not by itself, nor transposed, or a bracket is in it."""
+        """Return whether a bracket that was read could be a Lie bracket of fields instead of a vector."""
         nested = [isinstance(argument, Grid) for argument in arguments]
         behind = self._peek()
         alone = begin == 0 and (behind is None or behind.text in ("|", "vert", "rvert"))
         return (any(nested) and not all(nested)) or not (alone or self._is("^"))
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
-        """Whether a bracket holds one letter or function, and a letter stands in front of it, as in an expectation."""
+        """Return whether a bracket with one letter or function follows a letter, as in an expectation."""
         inside = self._found[begin + 1 : self._i - 1]
         before = self._found[begin - 1] if begin else None
         behind = before is not None and (before.kind in ("letter", "close") or before.text in GREEK)
@@ -249,7 +252,10 @@ class OperatorCursor(QuotientCursor):
         return Grid(tuple(entries))
 
     def _timed_behind_power(self, base: Node) -> Node:
-        """Go past ``(t)`` behind the power of a letter; other places are read behind an index above alone."""
+        """Read ``(t)`` after a power of a letter.
+
+        Other arguments are read only after a superscript that is an index.
+        """
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
@@ -279,7 +285,10 @@ class OperatorCursor(QuotientCursor):
         return base
 
     def _squared(self, power: Pow) -> Letter | None:
-        """The letter of a power, unless its powers may be something else: functions that are iterated, deltas."""
+        """Return the letter of a power.
+
+        Return ``None`` if its powers could mean something else, e.g. iterates of a function.
+        """
         letter = self._reading.letters.get(power.base.name) if isinstance(power.base, Sym) else None
         exponent = constant(power.exponent)
         unclear = letter is None or letter.base in words.FIELDS or letter.base in ("delta", "T", *words.ARGUED)
@@ -319,7 +328,7 @@ class OperatorCursor(QuotientCursor):
         return Pow(base, exponent)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
-        r"""The product of two vectors; factors may stand in front of the second one: ``\bm r \times m\bm a``."""
+        r"""Read the product of two vectors; factors may precede the second vector, ``\bm r \times m\bm a``."""
         if product == "cross" and left == Sym("I_vector"):
             raise Unread("a product of vectors needs a vector on both sides", sign.at)  # inertia, or the identity
         right = [self._signed_factor()]
@@ -333,7 +342,7 @@ class OperatorCursor(QuotientCursor):
         return Call(product, (left, product_of(right)))
 
     def _is_vector(self, node: Node) -> bool:
-        """Whether something is made of letters that are set as vectors, or of a matrix, as a whole."""
+        """Return whether an expression contains letters that are typeset as vectors, or a matrix."""
         if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised", "differential"):
             return self._is_vector(node.arguments[0])
         if isinstance(node, Call):
@@ -348,7 +357,7 @@ class OperatorCursor(QuotientCursor):
 
 
 def product_of(factors: Sequence[Node]) -> Node:
-    """A product, written as it is; a sign in front of the first factor is one of the product."""
+    """Return the product of factors as printed; a sign of the first factor becomes the sign of the product."""
     if len(factors) == 1:
         return factors[0]
     if isinstance(factors[0], Neg):

@@ -1,4 +1,4 @@
-r"""Macros of packages that many documents load: ``\dv{x}{t}``, ``\norm{x}``, ``\cross``, as what they stand for."""
+r"""Macros of common LaTeX packages, such as ``\dv{x}{t}``, ``\norm{x}`` or ``\cross``, and their replacement."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ _UNITS |= {
 }
 _UNITS |= {"kilogram": "kg", "kelvin": "K", "watt": "W", "joule": "J", "hertz": "Hz", "pascal": "Pa", "volt": "V"}
 _UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " ", ".": " "}
-"""Units and prefixes of the package siunitx, and how they are printed."""
+"""Units and prefixes of the package siunitx -> how they are printed."""
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
 _DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
 
 
 def put_in(found: Sequence[Token]) -> list[Token]:
-    """The tokens with macros of packages put in; those of the document's own are put in before."""
+    """Return the tokens with macros of packages replaced; the document's own macros were replaced before."""
     done: list[Token] = []
     i = 0
     while i < len(found):
@@ -90,7 +90,7 @@ def put_in(found: Sequence[Token]) -> list[Token]:
 
 
 def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token], int]:
-    """A number with its unit, as the package siunitx has them, and the place behind."""
+    """Return the tokens of a number with its unit in the notation of siunitx, and the position after it."""
     if found[i].text == "[":
         i = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1) + 1
     groups: list[list[Token]] = []
@@ -109,7 +109,7 @@ def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token]
 
 
 def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:
-    """What is set bold, letter by letter where it is a formula and not one letter with what it wears."""
+    """Return the tokens of a bold group, in which each letter of a formula is set bold on its own."""
     alone = [k for k, t in enumerate(inside) if t.kind == "letter" or (t.kind == "macro" and t.text in GREEK)]
     alone = [k for k in alone if not (k and inside[k - 1].text in "^_") and not _within_script(inside, k)]
     if len(alone) < 2 and not any(t.kind == "sign" and t.text in "=+-()^" for t in inside):
@@ -122,7 +122,7 @@ def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:
 
 
 def _within_script(inside: Sequence[Token], k: int) -> bool:
-    """Whether a token stands in an index or an exponent."""
+    """Return whether a token is inside a subscript or superscript."""
     depth = 0
     for place in range(k - 1, -1, -1):
         depth += (inside[place].kind == "close") - (inside[place].kind == "open")
@@ -132,7 +132,7 @@ def _within_script(inside: Sequence[Token], k: int) -> bool:
 
 
 def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
-    """The order of a derivative, in square brackets where it is not the first, and the place behind it."""
+    """Return the order of a derivative in square brackets, empty for the first order, and the position after it."""
     if found[i].text != "[":
         return [], i
     end = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1)
@@ -141,7 +141,7 @@ def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
 
 
 def _quotient(sign: str, order: list[Token], groups: list[list[Token]], at: int) -> list[Token]:
-    """A quotient of differentials; with one group, the derivative sign by it."""
+    """Return the tokens of a quotient of differentials, or of a derivative operator if there is only one group."""
     of, by = groups if len(groups) == 2 else ([], groups[0] if groups else [])
     mark = Token("letter" if sign == "d" else "macro", sign, at)
     above = [_brace(True, at), mark, *order, *of, _brace(False, at)]

@@ -1,4 +1,4 @@
-"""Letters as they are printed, with all that they wear."""
+"""Reading of letters with all decorations, such as indices, accents and superscripts."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from satsym.auditing.latex.words import (
 from satsym.formula.tree import Call, Node, Sym
 
 _SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to"}
-"""Signs in an index, and what they are called."""
+"""Signs in an index -> their names."""
 
 
 class LetterCursor(Cursor):
-    """Reads letters."""
+    """Parser of letters."""
 
     def _letter(self) -> Letter | None:
-        """A letter with all it wears; ``None``, with nothing taken, where none is next."""
+        """Read a letter with its decorations; ``None``, with nothing read, if no letter is next."""
         begin = self._i
         token = self._peek()
         letter: Letter | None = None
@@ -72,7 +72,7 @@ class LetterCursor(Cursor):
         return self._scripts(letter)
 
     def _may_vary(self, sign: Token, token: Token) -> bool:
-        """Whether a delta in front of a letter is a sign of variation: of two letters behind it, it is a factor."""
+        """Return whether a delta before a letter is a sign of variation; before two letters it is a factor."""
         if sign.text not in ("delta", "Delta"):
             return False
         if token.kind == "letter" and self._is("(", 1):
@@ -83,7 +83,7 @@ class LetterCursor(Cursor):
         return token.kind == "macro" and any(token.text in names for names in (GREEK, ACCENTS, MARKS, STYLES))
 
     def _letter_in(self, part: Sequence[Token]) -> Letter | None:
-        """The letter that a group is, if it is nothing else."""
+        """Return the letter that a group consists of; ``None`` if the group contains anything else."""
         inner = self._of(part)
         letter = inner._letter()
         return letter if letter is not None and inner._i == len(part) else None
@@ -96,7 +96,7 @@ class LetterCursor(Cursor):
         return replace(letter, style="_".join(sorted({*filter(None, letter.style.split("_")), STYLES[accent]})))
 
     def _scripts(self, letter: Letter) -> Letter:
-        """The letter with its index, stars and primes; a power is left where it is."""
+        """Read index, stars and primes of a letter; a power is not read."""
         while True:
             if self._is("^"):
                 self._part_transposition(letter.base == "e")
@@ -120,7 +120,7 @@ class LetterCursor(Cursor):
                 return letter
 
     _may_have_index = False
-    """Whether the letter that is read is another one than the base of exponentials."""
+    """Whether the letter that is being read may have a superscript index, unlike e, the base of exponentials."""
 
     def _marked(self, letter: Letter) -> str:
         self._may_have_index = letter.base != "e"
@@ -131,7 +131,7 @@ class LetterCursor(Cursor):
             self._bold = False
 
     def _part_transposition(self, exponential: bool) -> None:
-        """Put a sign of transposition that is printed behind something else above in an exponent of its own."""
+        """Split a superscript that ends in a transposition sign into two superscripts."""
         script = self._peek_group()
         upright = [
             k for k in (-4, -2) if len(script) >= -k and script[k].text in UPRIGHT and script[k:][-k // 2].text == "T"
@@ -149,7 +149,7 @@ class LetterCursor(Cursor):
         self._found = [*self._found[: self._i], *apart, *self._found[end:]]
 
     def _index_first(self) -> None:
-        """Put an index that is printed behind a power in front of it."""
+        """Move a subscript that is printed after a power before the power."""
         begin, found = self._i, self._found
         self._i += 1
         if self._peek() is None:
@@ -167,10 +167,10 @@ class LetterCursor(Cursor):
         self._i = begin
 
     _bold = False
-    """Whether the letter that is read is set as a vector."""
+    """Whether the letter that is being read is typeset as a vector."""
 
     def _mark(self) -> str:
-        """The mark that a superscript is; empty, with nothing taken, where it is a power."""
+        """Read a superscript that is a mark; empty, with nothing read, if the superscript is a power."""
         begin, found = self._i, self._found
         self._i += 1
         script = self._script()
@@ -211,7 +211,7 @@ class LetterCursor(Cursor):
         return ""
 
     def _said(self, script: Sequence[Token]) -> str:
-        """An index as text."""
+        """Return an index as text."""
         said: list[str] = []
         i = 0
         while i < len(script):
@@ -250,9 +250,9 @@ class LetterCursor(Cursor):
         return Call("value", (Sym(name), *places)) if places else Sym(name)
 
     def _taken_at(self, letter: Letter) -> tuple[Node, ...]:
-        """Where a letter is taken, in brackets behind it, which are gone past; nothing for a factor in brackets.
+        """Read the arguments in brackets after a letter at which it is evaluated; empty if the bracket is a factor.
 
-        Nothing, too, for ``(t)`` and for the letters that it is a function of, the first ones that it is printed with.
+        The result is also empty for ``(t)``, and for the arguments with which the letter is printed first.
         """
         begin = self._i
         if self._is("["):
@@ -323,14 +323,14 @@ class LetterCursor(Cursor):
         return tuple(self._inner(place, self._found[begin].at) for place in places)
 
     def _is_place_next(self) -> bool:
-        """Whether a single letter stands in the bracket that is next."""
+        """Return whether the next bracket contains a single letter."""
         begin = self._i
         end = self._bracket_end()
         self._i = begin
         return self._letter_in(self._found[begin + 1 : end]) is not None
 
     def _member(self, letter: Letter) -> tuple[Node, ...]:
-        """The place of a member of a sequence, in square brackets: ``x[k + 1]``."""
+        """Read the index of a member of a sequence, ``x[k + 1]``; empty if the bracket is a factor."""
         begin = self._i
         end = self._bracket_end()
         inside = self._found[begin + 1 : end]
@@ -342,14 +342,14 @@ class LetterCursor(Cursor):
         return ()
 
     def _place(self, part: Sequence[Token]) -> Letter | None:
-        """The letter at one place of a function, which may be a function of time itself."""
+        """Return the letter that is one argument of a function, with or without ``(t)``; otherwise ``None``."""
         inner = self._of(part)
         letter = inner._letter()
         rest = "".join(t.text for t in part[inner._i :])
         return letter if rest in ("", "(t)", "(tau)") else None
 
     def _is_shift(self, letter: Letter, part: Sequence[Token]) -> bool:
-        """Whether what stands in brackets behind a letter is a place, and no factor: u(t - T)."""
+        """Return whether the bracket after a letter is an argument, as in u(t - T), rather than a factor."""
         if letter.dots or letter.base not in SHIFTED:
             return False
         letters = [t.text for t in part if t.kind == "letter" or t.text in GREEK]
@@ -359,7 +359,7 @@ class LetterCursor(Cursor):
         return simple and "t" in letters and any(t.text in "+-" for t in part)
 
     def _is_taken(self, part: Sequence[Token]) -> bool:
-        """Whether what stands in brackets is a letter that is taken somewhere itself: f(x(T))."""
+        """Return whether the tokens are one letter with an argument of its own, such as x(T) in f(x(T))."""
         inner = self._of(part)
         letter = inner._letter()
         called = letter is not None and (inner._is("(") or (inner._is("[") and bool(inner._member(letter))))
@@ -368,7 +368,7 @@ class LetterCursor(Cursor):
         return called and inner._i == len(part)
 
     def _is_factor(self, letter: Letter, part: Sequence[Token]) -> bool:
-        """Whether a product in brackets behind a letter is a factor: of a matrix, products of matrices or vectors."""
+        """Return whether a product in brackets after a letter is a factor, as products of matrices or vectors are."""
         crossed = any(t.text in ("times", "cdot") for t in part) and letter.base not in SHIFTED
         bold = [t for t in part if t.kind == "macro" and t.text in STYLES]
         plain = [
@@ -377,12 +377,12 @@ class LetterCursor(Cursor):
         return crossed or (letter.bold and letter.base.isupper() and bool(bold) and not plain)
 
     def _is_power(self, part: Sequence[Token]) -> bool:
-        """Whether a letter stands in brackets with its power alone."""
+        """Return whether the tokens are a letter with a power and nothing else."""
         inner = self._of(part)
         return inner._letter() is not None and inner._is("^") and inner._script_end() == len(part)
 
     def _is_product(self, part: Sequence[Token]) -> bool:
-        """Whether letters stand side by side: in brackets behind a letter that is what a function is taken at."""
+        """Return whether the tokens are adjacent letters; in brackets after a letter such a product is an argument."""
         if len(part) < 2 or any((t.text in "+-*/" and t.kind == "sign") or t.text in DOUBLE_SIGNS for t in part):
             return False
         inner = self._of(part)
@@ -394,6 +394,6 @@ class LetterCursor(Cursor):
 
 
 def _is_lapse(part: Sequence[Token]) -> bool:
-    """Whether a difference of two times stands in brackets."""
+    """Return whether the tokens are a difference of two times."""
     named = [t.text for k, t in enumerate(part) if t.kind in ("letter", "macro") and part[k - 1].text not in "_{"]
     return len(named) == 2 and set(named) <= {"t", "tau", "s", "T"} and "-" in {t.text for t in part}

@@ -1,4 +1,4 @@
-"""Derivatives that are printed as quotients of differentials, and derivative signs in front of something."""
+"""Reading of derivatives that are printed as quotients of differentials, or as operators before an expression."""
 
 from __future__ import annotations
 
@@ -12,10 +12,13 @@ from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 
 
 class QuotientCursor(LetterCursor):
-    """Reads derivatives."""
+    """Parser of derivatives."""
 
     def _derivative(self, token: Token) -> Node | None:
-        """A derivative that is printed as a quotient; ``None``, with nothing taken, where none is next."""
+        """Read a derivative that is printed as a quotient.
+
+        Return ``None``, with nothing read, if there is no such quotient.
+        """
         begin, found = self._i, self._found
         parts: tuple[list[Token], list[Token]] | None = None
         if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
@@ -33,7 +36,7 @@ class QuotientCursor(LetterCursor):
         return None
 
     def _by_index(self, sign: Token) -> Node:
-        """A partial derivative that is printed with an index."""
+        """Read a partial derivative that is printed with its variable as an index."""
         by = self._letter_in(self._script())
         if by is None:
             raise Unread("a derivative with respect to this index is not supported", sign.at)
@@ -50,7 +53,10 @@ class QuotientCursor(LetterCursor):
         return what
 
     def _pass_time(self) -> None:
-        """Go past ``(t)`` behind a derivative; another letter there is what it is taken at, or a factor."""
+        """Skip ``(t)`` after a derivative.
+
+        Another letter in brackets could be an argument or a factor, and is refused.
+        """
         if self._is("(") and self._is_place_next():
             at = self._found[self._i].at
             if not (self._is("t", 1, "letter") and self._is(")", 2)):
@@ -58,7 +64,7 @@ class QuotientCursor(LetterCursor):
             self._i += 3
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
-        """A quotient of differentials with a slash."""
+        """Read a quotient of differentials with a slash, as numerator and denominator; otherwise ``None``."""
         slash = next((k for k in range(self._i, len(self._found)) if self._found[k].text == "/"), None)
         if slash is None or any(self._found[k].text in "+-=" for k in range(self._i, slash)):
             return None
@@ -76,14 +82,17 @@ class QuotientCursor(LetterCursor):
         return above, list(self._found[start : self._i])
 
     def _variables(self) -> Iterator[Letter | None]:
-        """Go past differentials, as far as there are some: the letter of each; ``None`` where it has none."""
+        """Skip all differentials that come next, and yield the letter of each.
+
+        Return ``None`` for a differential without letter.
+        """
         while is_differential(self._peek()):
             rest = list(self._found[self._i :])
             self._i += len(rest) - len(after_differential(rest))
             yield self._letter()
 
     def _differential(self, at: int) -> Node:
-        """The differential of the letter that is next."""
+        """Read the letter of a differential."""
         letter = self._letter()
         if letter is None:
             raise Unread("a differential is not supported", at)
@@ -91,11 +100,11 @@ class QuotientCursor(LetterCursor):
         return Call("differential", (self._symbol(letter, at),))
 
     def _dotted(self, inner: Node, times: int) -> Node:
-        """A derivative by time, of what dots stand over."""
+        """Return the time derivative of the given order of an expression."""
         return inner if times == 0 else self._along(self._dotted(inner, times - 1))
 
     def _quotient(self, above: list[Token], below: list[Token]) -> Node | None:
-        """The derivative that a quotient of differentials is."""
+        """Return the derivative that a quotient of differentials denotes; ``None`` if the quotient is no derivative."""
         by = self._differentials(below)
         head = self._order(above)
         if by is None or head is None or head[0] != len(by):
@@ -108,7 +117,7 @@ class QuotientCursor(LetterCursor):
         return self._derived(above, rest, partial, by)
 
     def _derived(self, above: Sequence[Token], rest: list[Token], partial: bool, by: Sequence[Letter]) -> Node:
-        """The derivative of what stands behind the sign, or behind the quotient."""
+        """Return the derivative of the expression in the numerator, or after the quotient if the numerator has none."""
         what: Node
         if rest:
             letter = self._letter_in(rest)
@@ -126,7 +135,7 @@ class QuotientCursor(LetterCursor):
         return what
 
     def _operand(self) -> Node:
-        """What a derivative sign in front is about: a bracket, or the rest of the term."""
+        """Read the operand of a derivative operator, which is a bracket or the rest of the term."""
         if self._is("(") or self._is("["):
             return self._bracket()
         at = self._found[min(self._i, len(self._found) - 1)].at
@@ -136,7 +145,7 @@ class QuotientCursor(LetterCursor):
         return found
 
     def _along(self, what: Node) -> Node:
-        """The derivative by time: one more dot on a letter."""
+        """Return the time derivative of an expression; a letter receives one more dot."""
         if isinstance(what, Sym) and (letter := self._reading.letters.get(what.name)) and (dotted := letter.dotted()):
             self._reading.letters.setdefault(dotted.name, dotted)
             return Sym(dotted.name)
@@ -149,7 +158,7 @@ class QuotientCursor(LetterCursor):
         return Sym(letter.name)
 
     def _order(self, above: list[Token]) -> tuple[int, list[Token], bool] | None:
-        """The order of a derivative, of what (empty where that follows), and whether it is partial."""
+        """Return order, operand (empty if it comes after the quotient), and whether the derivative is partial."""
         if not above or not is_differential(above[0]):
             return None
         rest, order = after_differential(above), 1
@@ -162,7 +171,7 @@ class QuotientCursor(LetterCursor):
         return order, rest, above[0].text == "partial"
 
     def _differentials(self, below: list[Token]) -> list[Letter] | None:
-        """The variables of differentiation, each repeated by its order."""
+        """Return the variables of differentiation, each repeated according to its order; ``None`` if there are none."""
         found: list[Letter] = []
         inner = self._of(below)
         while inner._i < len(below):
@@ -191,7 +200,7 @@ class QuotientCursor(LetterCursor):
 
 
 def is_differential(token: Token | None) -> bool:
-    """Whether a token is, or sets upright, the sign of a differential."""
+    """Return whether a token can begin a differential: d, the partial sign, or a macro that sets d upright."""
     if token is None:
         return False
     return (token.kind == "letter" and token.text == "d") or (
@@ -200,14 +209,14 @@ def is_differential(token: Token | None) -> bool:
 
 
 def after_differential(part: list[Token]) -> list[Token]:
-    """What follows a differential sign, which may be set upright."""
+    """Return the tokens after a differential sign, which may be set upright."""
     if part[0].text in ("mathrm", "text", "operatorname"):
         return part[group_end(part, 1) :] if len(part) > 1 and part[1].kind == "open" else part[2:]
     return part[1:]
 
 
 def are_differentials(*sides: Node) -> bool:
-    """Whether each term of each side has a differential among its factors; a zero may be one of two sides."""
+    """Return whether each term of each side contains a differential; a side may also be zero."""
     terms = [term for side in sides if side != ZERO for term in (side.terms if isinstance(side, Add) else (side,))]
     found = [[isinstance(part, Call) and part.function == "differential" for _, part in walk(term)] for term in terms]
     return all(map(any, found))

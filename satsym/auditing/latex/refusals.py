@@ -1,4 +1,4 @@
-"""What printed formulas are refused for: words, units, names without a backslash, and what has two readings."""
+"""Refusals of printed formulas: words, units, names without a backslash, and ambiguous notation."""
 
 from __future__ import annotations
 
@@ -17,13 +17,16 @@ from satsym.wording import printable
 
 
 class RefusalCursor(OperatorCursor):
-    """Refuses at its place what the grammar does not read."""
+    """Parser that refuses, with its position, any input that the grammar does not read."""
 
     def _is_function(self, token: Token) -> bool:
         return token.kind == "macro" and token.text in FUNCTIONS and token.text != "d"
 
     def _continues_argument(self, token: Token, last: Node) -> bool:
-        r"""Whether what a function is taken of goes on: ``2\theta``, ``\omega t``, ``kx``; not ``\theta v``."""
+        r"""Return whether the argument of a function continues, as in ``2\theta``, ``\omega t``, ``kx``.
+
+        Not ``\theta v``.
+        """
         if token.kind not in ("letter", "macro") or (token.kind == "macro" and token.text not in GREEK):
             return isinstance(last, Num) and token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS)
         if self._is_function(token) or (token.text == "e" and self._is("^", 1)):
@@ -40,14 +43,14 @@ class RefusalCursor(OperatorCursor):
         return False
 
     def _may_be_divided_by(self, token: Token, above: Sequence[Node], divisor: Node) -> bool:
-        """Whether what follows could stand below the slash, too: in ``a/bc``, not in ``1/2 mv`` or before vectors."""
+        """Return whether the next factor could belong to the denominator, as in ``a/bc``, not in ``1/2 mv``."""
         if not self._begins_factor(token) or token.text in words.STYLES or token.text in MARKS:
             return False
         number = constant(divisor) is not None
         return not (number and constant(product_of(above)) is not None)
 
     def _refuse_behind(self, last: Node, token: Token) -> None:
-        """Refuse what is no factor behind something: units, powers of ten, what a transform is taken of."""
+        """Refuse input after an expression that is no factor: units, powers of ten, arguments of a transform."""
         before, after = self._found[self._i - 1], self._peek(1)
         if last in (Sym("delta"), Sym("Delta")) and token.text in words.INTEGRALS:
             raise Unread("this delta could be a difference or a factor in front of an integral", before.at)
@@ -82,7 +85,7 @@ class RefusalCursor(OperatorCursor):
                 raise Unread("arguments in brackets of this kind are not supported", token.at)
 
     def _spells(self, word: str) -> bool:
-        """Whether letters side by side, the first of which was taken, are a word; then it is taken."""
+        """Return whether adjacent letters, of which the first was read, spell a word; if they do, read all of them."""
         begin = self._i - 1
         part = self._found[begin : begin + len(word)]
         if [token.text for token in part] != list(word) or part[-1].at - part[0].at != len(word) - 1:
@@ -91,7 +94,7 @@ class RefusalCursor(OperatorCursor):
         return True
 
     def _spelled_function(self, token: Token) -> Node | None:
-        """A function whose backslash is lost, in front of a bracket or a Greek letter; elsewhere it is refused."""
+        """Read a function whose backslash is missing, before a bracket or Greek letter; refuse it elsewhere."""
         before = self._found[self._i - 2] if self._i > 1 else None
         alone = before is None or before.kind != "letter" or before.at != token.at - 1
         for word in (*words.SPELLED, *words.CALLED):
@@ -108,7 +111,7 @@ class RefusalCursor(OperatorCursor):
         return None
 
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
-        """Refuse quotients that are derivatives of other kinds, and what is left of differentials."""
+        """Refuse quotients that denote other kinds of derivatives, and remaining differentials."""
         if not above or (len(above) > 1 and above[1].text in ("^", "_")):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
@@ -127,7 +130,7 @@ class RefusalCursor(OperatorCursor):
             raise Unread("a unit in a formula is not supported", above[0].at)
 
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
-        """Refuse words that are set upright and are no letters: functions that are not known, and plain language."""
+        """Refuse upright words that are no letters: unknown functions, and plain language."""
         behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
         taken = behind is not None and (self._begins_factor(behind) or behind.text == "^")
         places = [t.at for t in self._peek_group() if t.kind == "letter"]

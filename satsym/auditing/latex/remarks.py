@@ -1,4 +1,4 @@
-"""What of a formula is no mathematics: spaces, labels, words between formulas, which part these."""
+"""Removal of the parts of a formula that are not mathematics: spaces, labels, and the words that separate formulas."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from satsym.auditing.latex.words import (
 
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 _LINED = ("boxed", "fbox", "underline", "overline")
-"""What may stand around, below or above a whole relation."""
+"""Macros that draw a line or frame at a whole relation."""
 _NARROW = (";", ":", ">", "~", "medspace", "thickspace")
-"""Spaces that part nothing by themselves."""
+"""Spaces that are too narrow to separate formulas."""
 REMARK = "remark"
-"""The macro that stands for words between formulas."""
+"""Name of the macro that replaces words between formulas."""
 _JOINED = {("|", "|"): "|", ("<", "<"): "ll", (">", ">"): "gg", (":", "="): "coloneq", ("=", ":"): "equiv"}
 _JOINED |= {("<", "="): "le", (">", "="): "ge", ("=", ">"): REMARK}
-"""Two signs that are printed for another one."""
+"""Pairs of signs that are printed in place of one sign."""
 
 
 def without_remarks(found: Sequence[Token]) -> list[Token]:
-    """The tokens without spaces, labels and alignment; for words between formulas a sign that parts these."""
+    """Return the tokens without spaces, labels and alignment, with separators in place of words between formulas."""
     kept: list[Token] = []
     i = depth = narrow = 0
     while i < len(found):
@@ -120,24 +120,24 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
 
 
 def _is_relation(found: Sequence[Token], i: int, anything: bool) -> bool:
-    """Whether a group at a place holds a relation, or anything."""
+    """Return whether the group at a position contains a relation, or with `anything` whether it is not empty."""
     inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
     return (anything and bool(inside)) or any(t.text == "=" or t.text in RELATIONS for t in inside)
 
 
 def _is_punctuation(found: Sequence[Token], i: int) -> bool:
-    """Whether a group at a place holds a comma or a full stop alone."""
+    """Return whether the group at a position contains only a comma, semicolon or full stop."""
     return [t.kind for t in found[i : i + 3]] == ["open", "sign", "close"] and found[i + 1].text in ",.;"
 
 
 def _stands_empty(kept: Sequence[Token], behind: Sequence[Token]) -> bool:
-    """Whether an empty group only sets the space of the sign behind it."""
+    """Return whether an empty group only affects the space before the next sign."""
     free = not kept or kept[-1].text in ("&", "\\") or (kept[-1].kind == "sign" and kept[-1].text not in "^_")
     return free and bool(behind) and behind[0].kind == "sign" and behind[0].text in "+-="
 
 
 def _is_bracket(found: Sequence[Token], i: int) -> bool:
-    """Whether a group is a bracket and nothing else."""
+    """Return whether a group contains one bracket and nothing else."""
     end = group_end(found, i)
     depth = 0
     inside = [token for token in found[i + 1 : end - 1] if token.text not in ("left", "right")]
@@ -149,20 +149,20 @@ def _is_bracket(found: Sequence[Token], i: int) -> bool:
 
 
 def _stands_free(kept: Sequence[Token]) -> bool:
-    """Whether what follows is no argument, and no index."""
+    """Return whether the next group is neither an argument nor a subscript or superscript."""
     if not kept or kept[-1].text in GREEK:
         return True
     return kept[-1].kind not in ("macro", "close", "begin") and kept[-1].text not in "^_"
 
 
 def _is_narrow(found: Sequence[Token], i: int) -> bool:
-    """Whether a space is none, or goes back."""
+    """Return whether a space has zero or negative width."""
     inside = found[i + 1 : group_end(found, i)]
     return bool(inside) and (inside[0].text == "-" or inside[0].text.strip("0.") == "")
 
 
 def _height(found: Sequence[Token], i: int) -> int:
-    """The place behind the height that is printed in brackets behind the end of a line; 0 where none is."""
+    """Return the position after the line height in brackets that follows a line break; 0 if there is none."""
     if i >= len(found) or found[i].text != "[":
         return 0
     end = next((k for k in range(i, min(i + 8, len(found))) if found[k].text == "]"), i)
@@ -172,7 +172,7 @@ def _height(found: Sequence[Token], i: int) -> int:
 
 
 def _underset(found: Sequence[Token], i: int) -> list[Token]:
-    """What is minimised over what stands below, as an index of the word; empty for other words."""
+    """Return an operator such as min with the text below it as its subscript; empty for other words."""
     end = group_end(found, i)
     if end >= len(found) or found[i].kind != "open":
         return []
@@ -185,7 +185,7 @@ def _underset(found: Sequence[Token], i: int) -> list[Token]:
 
 
 def _has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
-    """Whether words at a place, which are no index, have relations between them."""
+    """Return whether words at a position contain formulas with relations, and are not an index."""
     index = any(token.text in "^_" for token in kept[-2:])
     inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
     related = any(token.text == "=" or token.text in RELATIONS for token in inside)
@@ -193,7 +193,7 @@ def _has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
 
 
 def _apart(found: Sequence[Token], i: int) -> list[Token]:
-    """Words at a place and the formulas between them, each by itself."""
+    """Return the words at a position and the formulas between them as separate parts."""
     macro, opening = found[i - 1], found[i]
     apart: list[Token] = []
     spoken: list[Token] = []
@@ -209,7 +209,7 @@ def _apart(found: Sequence[Token], i: int) -> list[Token]:
 
 
 def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
-    """Whether the group at a place is words of plain language, outside of brackets or all that stands in one."""
+    """Return whether the group at a position is plain language, either outside brackets or alone within one."""
     index = any(token.text in "^_" for token in kept[-2:-1] if kept[-1].kind == "open")
     if index or i >= len(found) or found[i].kind != "open":
         return False

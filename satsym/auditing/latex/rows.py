@@ -1,4 +1,4 @@
-"""A formula as its lines, and these as the sides of equations and other relations: before any of it is read."""
+"""Division of a formula into lines, and of lines into the sides of their relations, before any side is read."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from satsym.auditing.latex.words import (
 
 @dataclass
 class Line:
-    """A relation, or several in a row: what stands between the signs, and which these are."""
+    """A chain of relations: the expressions, and the relation signs between them."""
 
     sides: list[list[Token]]
     signs: list[str]
 
     @property
     def bare(self) -> bool:
-        """Whether it is an expression alone."""
+        """Whether the line is an expression without relation sign."""
         return not self.signs
 
 
 def lines(found: Sequence[Token]) -> list[Line]:
-    """Relations, each as its sides: split at ends of lines, wide spaces, words and commas between them."""
+    """Return all relations as their sides, divided at line breaks, wide spaces, words and commas."""
     done: list[Line] = []
     begun: dict[int, Line] = {}
     for place, row in _rows(found):
@@ -69,13 +69,13 @@ def lines(found: Sequence[Token]) -> list[Line]:
 
 
 def _is_label(side: Sequence[Token]) -> bool:
-    """Whether what stands by itself is a number in brackets, or only names what words were said of."""
+    """Return whether a separate expression is only a number in brackets or a single name, and can be left out."""
     inside = [token for token in side if token.text not in "()."]
     return len(inside) <= 1 and len(side) <= 3
 
 
 def _parted(line: Line) -> list[Line]:
-    """The equations of which an arrow says that one follows from the other; other lines as they are."""
+    """Return the equations that are connected by an implication arrow as separate lines."""
     for k, sign in enumerate(line.signs):
         if sign == "tends" and "=" in line.signs[:k] and "=" in line.signs[k + 1 :]:
             first = Line(line.sides[: k + 1], line.signs[:k])
@@ -84,7 +84,7 @@ def _parted(line: Line) -> list[Line]:
 
 
 def _refuse_arrow(line: Line) -> None:
-    """Refuse an arrow that may say what tends to something, what follows from something, or what a map is between."""
+    """Refuse an arrow that could mean a limit, an implication or a map, and an inequality in a chain of relations."""
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
         if sign == "unequal" and len(line.signs) > 1:
             raise Unread("an inequality in a chain of relations is not supported", (after or before)[0].at)
@@ -93,7 +93,10 @@ def _refuse_arrow(line: Line) -> None:
 
 
 def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
-    """What stands in a line between wide spaces, with the number of the line; matrices and brackets stay together."""
+    """Return the parts of each line between wide spaces, with the number of the line.
+
+    Matrices and brackets are not divided.
+    """
     rows: list[list[Token]] = [[]]
     places = [0]
     line = 0
@@ -155,7 +158,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
 
 
 def _repeats(found: Sequence[Token], i: int, row: Sequence[Token]) -> int:
-    """How many tokens at the beginning of a line say again the sign that the line before it ends with."""
+    """Return the number of tokens at the beginning of a line that repeat the sign at the end of the line before."""
     begin = i
     while i < len(found) and found[i].text == "&":
         i += 1
@@ -164,7 +167,7 @@ def _repeats(found: Sequence[Token], i: int, row: Sequence[Token]) -> int:
 
 
 def _refuse_gap(row: Sequence[Token], gap: int) -> None:
-    """Refuse a space that may stand between two equations, or between factors of a side that both share."""
+    """Refuse a space that could separate two equations or two factors."""
     before, behind = row[:gap], row[gap:]
     if _has_relation(before) and _has_relation(behind):
         ends = before[-1], behind[0]
@@ -179,7 +182,7 @@ def _is_brace(row: Sequence[Token]) -> bool:
 
 
 def _goes_on(row: Sequence[Token]) -> bool:
-    """Whether a line ends with a sign that asks for more."""
+    """Return whether a line ends with a sign after which the expression continues."""
     last = row[-1] if row else None
     if last is None:
         return False
@@ -194,7 +197,7 @@ def _goes_on(row: Sequence[Token]) -> bool:
 
 
 def _asks(row: Sequence[Token]) -> bool:
-    """Whether a line ends with what is sought, as in a problem of least cost, whose cost comes behind a space."""
+    """Return whether a line ends with the variables of an optimisation whose cost follows after a space."""
     for k in range(len(row) - 1, -1, -1):
         if row[k].kind == "macro" and row[k].text in OPTIMA:
             end = group_end(row, k + 2) if k + 2 < len(row) and row[k + 2].kind == "open" else k + 3
@@ -203,7 +206,7 @@ def _asks(row: Sequence[Token]) -> bool:
 
 
 def _equations(row: Sequence[Token]) -> list[list[Token]]:
-    """The relations that stand side by side in a line whose columns are aligned."""
+    """Return the relations that stand side by side in a line with aligned columns."""
     pieces: list[list[Token]] = [[]]
     cells = split(row, lambda token: token.kind == "sign" and token.text == "&")
     for cell, after in zip(cells, [*cells[1:], []], strict=True):
@@ -225,7 +228,7 @@ def _equations(row: Sequence[Token]) -> list[list[Token]]:
 
 
 def _is_system(found: Sequence[Token], i: int, name: str, before: Sequence[Token]) -> bool:
-    """Whether the lines of an environment are equations, not entries of a matrix or cases of one side."""
+    """Return whether the lines of an environment are equations, not entries of a matrix or cases of one side."""
     if name in SYSTEMS:
         return not name.endswith("cases") or _is_brace([t for t in before if t.text not in ("&", ".")])
     if name != "array":
@@ -241,7 +244,7 @@ def _is_system(found: Sequence[Token], i: int, name: str, before: Sequence[Token
 
 
 def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
-    """Relations between which commas stand; ends of sentences are left out, lists stay together."""
+    """Return the relations that are separated by commas, without full stops; lists are not divided."""
     parts = [
         piece
         for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
@@ -277,7 +280,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
 
 
 def _at_colons(found: Sequence[Token]) -> list[Token]:
-    """Relations, with semicolons for the colons between them."""
+    """Return the tokens with colons between relations replaced by semicolons."""
     part = list(found)
     for k in range(1, len(part) - 1):
         colon = part[k].kind == "sign" and part[k].text == ":" and not _sign(part[k - 1]) and not _sign(part[k + 1])
@@ -287,7 +290,7 @@ def _at_colons(found: Sequence[Token]) -> list[Token]:
 
 
 def _unbracketed(part: list[Token]) -> list[Token]:
-    """A relation without the brackets that stand around all of it."""
+    """Return a relation without brackets that enclose all of it."""
     depth = 0
     for place, token in enumerate(part):
         depth += (token.text == "(") - (token.text == ")")
@@ -297,7 +300,7 @@ def _unbracketed(part: list[Token]) -> list[Token]:
 
 
 def _goes_on_as_list(relation: Sequence[Token], later: Sequence[Sequence[Token]]) -> bool:
-    """Whether numbers, or what an ellipsis stands among, follow a relation as the rest of a list: i = 0, ..., N."""
+    """Return whether the rest of a list follows a relation, such as in i = 0, ..., N."""
     rest = [relation[-1:]]
     for part in later:
         if _has_relation(part):
@@ -313,7 +316,7 @@ def _between(found: Sequence[Token], kept: Sequence[Sequence[Token]]) -> int:
 
 
 def _is_remark(part: Sequence[Token]) -> bool:
-    """Whether what follows an equation is words."""
+    """Return whether the part after an equation consists of words."""
     return any(t.text in UPRIGHT for t in part)
 
 
@@ -328,14 +331,14 @@ def _has_relation(part: Sequence[Token]) -> bool:
 
 
 def _sign(token: Token) -> str:
-    """Which relation a token is the sign of; empty where of none."""
+    """Return the relation that a token denotes; empty if the token is no relation sign."""
     if (token.kind == "sign" and token.text == "=") or (token.kind == "macro" and token.text in EQUALS):
         return "="
     return RELATIONS.get(token.text, "") if token.kind in ("macro", "sign") else ""
 
 
 def _sides(found: Sequence[Token]) -> Line:
-    """What stands between the signs of relation."""
+    """Return the expressions between the relation signs."""
     signs: list[Token] = []
 
     def divides(token: Token) -> bool:
@@ -351,12 +354,12 @@ def _sides(found: Sequence[Token]) -> Line:
 
 
 def relation_in(part: Sequence[Token]) -> Line:
-    """The sides of a relation that stands inside of something, such as the condition of a case."""
+    """Return the sides of a relation within another expression, such as the condition of a case."""
     return _sides(_without_stop([token for token in part if token.text not in (REMARK, "quad", "qquad", " ")]))
 
 
 def split(found: Sequence[Token], divides: Callable[[Token], bool]) -> list[list[Token]]:
-    """The tokens between those that divide, outside of all brackets and environments."""
+    """Return the tokens between dividing tokens, which are recognised outside of brackets and environments only."""
     parts: list[list[Token]] = [[]]
     depth = 0
     closing = max((k for k, token in enumerate(found) if token.kind == "macro" and token.text in CLOSING), default=-1)

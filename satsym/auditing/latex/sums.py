@@ -1,4 +1,4 @@
-"""Sums with their signs, double ones too; sums over an index, and where these end; integrals."""
+"""Reading of sums of terms, including double signs, of sums over an index, and of integrals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from satsym.formula.tree import Add, Call, Mul, Neg, Node, children, symbols
 
 
 class SumCursor(EnclosedCursor):
-    """Reads sums."""
+    """Parser of sums of terms, sums over an index, and integrals."""
 
     def _sum(self) -> Node:
         terms: list[Node] = []
@@ -39,7 +39,7 @@ class SumCursor(EnclosedCursor):
         return terms[0] if len(terms) == 1 else Add(tuple(terms))
 
     def _sum_over(self, token: Token) -> Node:
-        """A sum over an index: the term behind it, the index, and from where to where, as far as that is printed."""
+        """Read a sum or product over an index: the term, the index, and the limits as far as they are printed."""
         limits = self._limits()
         parts: list[Node] = [self._product()]
         if below := limits.get("_"):
@@ -57,7 +57,7 @@ class SumCursor(EnclosedCursor):
         return Call("sum" if token.text == "sum" else "product", tuple(parts))
 
     def _integral(self, token: Token) -> Node:
-        """An integral: what stands up to the differential, its letter, and from where to where, as far as printed."""
+        """Read an integral: integrand up to the differential, variable, and limits as far as they are printed."""
         limits = self._limits()
         self._put_differential_last()
         begin, depth = self._i, 0
@@ -84,7 +84,7 @@ class SumCursor(EnclosedCursor):
         raise Unread("an integral without a differential at its end is not supported", token.at)
 
     def _put_differential_last(self) -> None:
-        """Put a differential that is printed in a numerator, or in front of all, behind what is integrated."""
+        """Move a differential that is printed in a numerator, or before the integrand, after the integrand."""
         found, i = list(self._found), self._i
         end = group_end(found, i) if self._is("{", kind="open") else i
         whole = end == len(found) or found[end].text in "+-)]" or end == i
@@ -122,7 +122,7 @@ class SumCursor(EnclosedCursor):
         self._found = found
 
     def _additive(self) -> str:
-        """The sign of a sum that is next; empty where none is."""
+        """Return the additive sign that comes next; empty if there is none."""
         token = self._peek()
         signed = token is not None and (
             (token.kind == "sign" and token.text in "+-")
@@ -131,18 +131,18 @@ class SumCursor(EnclosedCursor):
         return token.text if token is not None and signed else ""
 
     def _free(self, term: Node) -> set[str]:
-        """The letters of a term, and those of their indices, that are none over which the term is a sum itself."""
+        """Return the letters and indices of a term, except the indices of sums within the term."""
         factors = term.factors if isinstance(term, Mul) else (term,)
         return set[str]().union(*(self._indices(factor) - _summed_over(factor) for factor in factors))
 
     def _indices(self, term: Node) -> set[str]:
-        """The letters of a term, and those of their indices."""
+        """Return the letters of a term, and the letters in their indices."""
         letters = [self._reading.letters.get(name) for name in symbols(term)]
         return symbols(term).union(*(letter.index.split("_") for letter in letters if letter))
 
 
 def _summed_over(term: Node) -> set[str]:
-    """The indices of the sums that are factors of a term."""
+    """Return the indices of the sums that are factors of a term."""
     sums = [part for part in (term, *children(term)) if isinstance(part, Call) and part.function == "sum"]
     over = [part.arguments[1] for part in sums if len(part.arguments) > 1]
     return set().union(*(symbols(index.arguments[0] if isinstance(index, Call) else index) for index in over))

@@ -1,4 +1,4 @@
-"""LaTeX as tokens, each with its place: pylatexenc takes a text apart, macros of the document's own are put in."""
+"""Division of LaTeX into tokens with their positions, by pylatexenc, and replacement of the document's own macros."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 MAX_LENGTH = 20_000
-"""Characters of one formula."""
+"""Number of characters that one formula may have."""
 MAX_TOKENS = 8000
-"""Tokens of one formula once macros are put in: no macro can make an endless one."""
+"""Number of tokens that one formula may have after its macros are replaced; this also stops recursive macros."""
 _MAX_NESTING = 30
-"""Macros within macros."""
+"""Number of levels to which macros may occur within macros."""
 
 
 class Unread(BadInput):
-    """A formula cannot be read: what is wrong, and at which character."""
+    """A formula cannot be read; contains the reason and the position of the character."""
 
     def __init__(self, message: str, at: int) -> None:
         super().__init__(f"{message} (character {at + 1})")
@@ -30,10 +30,10 @@ class Unread(BadInput):
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of a formula.
+    """A token of a formula.
 
     ``kind`` is ``letter``, ``number``, ``macro``, ``sign`` (any other character), ``open``, ``close``, ``begin`` or
-    ``end`` (of an environment); ``at`` is the character where it begins.
+    ``end`` (of an environment); ``at`` is the position of its first character.
     """
 
     kind: str
@@ -43,10 +43,10 @@ class Token:
 
 @dataclass(frozen=True)
 class Macro:
-    """A macro of the document's own: how many arguments it takes, and what stands for it.
+    """A macro that the document defines: its number of arguments and its replacement.
 
-    The first argument is optional, in square brackets, where it has a ``default``; a star behind a macro that is
-    ``starred`` changes sizes alone.
+    If it has a ``default``, the first argument is optional and given in square brackets. A star after a ``starred``
+    macro changes only sizes.
     """
 
     arguments: int
@@ -56,7 +56,7 @@ class Macro:
 
 
 UNKNOWN = Macro(0, ())
-"""A macro whose definition is not understood."""
+"""A macro whose definition could not be read."""
 Macros = Mapping[str, Macro]
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
@@ -87,21 +87,21 @@ _GREEK = dict(
 
 
 def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Token]:
-    """The tokens of a formula.
+    """Return the tokens of a formula.
 
     Parameters
     ----------
     text
-        What stands between the signs of mathematics.
+        LaTeX of the formula, without the delimiters of mathematics.
     macros
-        The document's own.
+        Macros that the document defines.
     start
-        The place of its first character.
+        Position of the first character in the document.
 
     Raises
     ------
     Unread
-        If it is too long, or macros make it so, or a character is none.
+        If the formula is too long, also after its macros are replaced, or if it contains an invalid character.
     """
     if len(text) > MAX_LENGTH:
         raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", start)
@@ -126,12 +126,12 @@ def _refuse_long(token: Token) -> None:
 
 
 def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Token]:
-    """Tokens with macros put in; each that comes of one has its place.
+    """Return the tokens with macros replaced, each at the position of its macro.
 
     Raises
     ------
     Unread
-        If there is no end to it, or an argument is missing.
+        If macros are nested too deeply, or an argument is missing.
     """
     done: list[Token] = []
     rest, i = list(found), 0
@@ -163,7 +163,7 @@ def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Tok
 
 
 def group_end(found: Sequence[Token], i: int) -> int:
-    """The place behind the closing brace of the group that opens at a place; the end where none closes it."""
+    """Return the position after the group that begins at a position; the number of tokens if it is not closed."""
     depth = 0
     for k in range(i, len(found)):
         depth += (found[k].kind == "open") - (found[k].kind == "close")
@@ -173,7 +173,7 @@ def group_end(found: Sequence[Token], i: int) -> int:
 
 
 def in_tex(part: Sequence[Token]) -> str:
-    """Tokens as LaTeX again."""
+    """Return tokens as LaTeX."""
     said, after_macro = "", False
     for token in part:
         text = f"\\{token.text}" if token.kind == "macro" else token.text
@@ -183,7 +183,7 @@ def in_tex(part: Sequence[Token]) -> str:
 
 
 def has_bold(part: Sequence[Token]) -> bool:
-    """Whether a letter that is set as a vector is among tokens."""
+    """Return whether the tokens contain a letter that is typeset as a vector."""
     return any(token.kind == "macro" and STYLES.get(token.text) == "vector" for token in part)
 
 
@@ -197,7 +197,7 @@ def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token]
 
 
 def _optional(found: Sequence[Token], i: int, default: Sequence[Token]) -> tuple[Sequence[Token], int]:
-    """An argument in square brackets at a place, or what stands for it, and the place behind."""
+    """Return the optional argument in square brackets at a position, or its default, and the position after it."""
     depth = 0
     for k in range(i, len(found)) if i < len(found) and found[i].text == "[" else ():
         opens, closes = found[k].text == "[", found[k].text == "]"
@@ -225,7 +225,7 @@ def _filled(macro: Macro, arguments: Sequence[Sequence[Token]], at: int) -> list
 
 
 def _pieces(text: str, start: int) -> list[Token]:
-    """What pylatexenc finds, digits joined to numbers, comments left out."""
+    """Return the tokens that pylatexenc finds, with digits joined to numbers and without comments."""
     from pylatexenc.latexwalker import LatexWalker, LatexWalkerEndOfStream, LatexWalkerParseError
 
     walker = LatexWalker(text, tolerant_parsing=False)
@@ -293,21 +293,21 @@ _PLAIN = re.compile(
     r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)(?P<primes>'*)"
     r"|(?P<power>(?:\*\*|\^)\s*[-+]?)|(?P<sign>[^\sA-Za-z0-9]))"
 )
-"""Pieces of plain notation; ``d2x`` is one in front of a slash that has a differential behind it."""
+"""Pattern of the pieces of plain notation; ``d2x`` is a differential only before a slash and another differential."""
 _BELOW = re.compile(r"d(?:(?P<time>t)(?P<times>[2-4])|(?P<by>[A-Za-z]\w*))")
-"""What a slash divides by in a quotient of differentials; ``dt2`` is the square of one."""
+"""Pattern of the denominator of a quotient of differentials; ``dt2`` is the square of ``dt``."""
 
 
 def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
-    """The tokens of a formula in plain notation, ``2n*x_dot`` or ``2 n x_dot``, where names have several letters.
+    """Return the tokens of a formula in plain notation, ``2n*x_dot`` or ``2 n x_dot``.
 
-    Names, functions and quotients of differentials become what stands for them in LaTeX; a word that is not known,
-    while all its letters are, becomes a product of these.
+    Names, which may have several letters, functions and quotients of differentials are replaced by their LaTeX. An
+    unknown word whose letters are all known becomes the product of its letters.
 
     Raises
     ------
     Unread
-        As of :func:`tokens`.
+        If the formula is too long, or contains an invalid character.
     """
     if len(text) > MAX_LENGTH:
         raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", 0)
@@ -341,7 +341,7 @@ def _order(digit: str | None) -> str:
 
 
 def _exponents_grouped(found: list[Token]) -> list[Token]:
-    """The tokens with braces around exponents that have a sign or brackets."""
+    """Return the tokens with braces around exponents that have a sign or brackets."""
     for i in [k for k, token in enumerate(found[:-1]) if token.text == "^"][::-1]:
         last = first = i + 1 + (found[i + 1].text in "+-")
         depth = 0
@@ -358,7 +358,7 @@ def _exponents_grouped(found: list[Token]) -> list[Token]:
 
 
 def _word(word: str, primes: int, at: int, behind: str, is_known: Callable[[Letter], bool]) -> list[Token]:
-    """A name in plain notation, or a function."""
+    """Return the tokens of a name or function in plain notation."""
     if word in FUNCTIONS and (behind == "(" or word in NUMBERED_FUNCTIONS):
         return _placed(rf"\operatorname{{{word}}}", at) if word == "sqrt" else [Token("macro", word, at)]
     letter = of_word(word).dotted(primes)
@@ -371,5 +371,5 @@ def _word(word: str, primes: int, at: int, behind: str, is_known: Callable[[Lett
 
 
 def _placed(latex: str, at: int) -> list[Token]:
-    """Tokens of LaTeX that stands for something at a place."""
+    """Return the tokens of some LaTeX, all at one given position."""
     return [replace(token, at=at) for token in _pieces(latex, 0)]

@@ -1,4 +1,4 @@
-"""The words of the grammar: macros, functions, relations, environments, and what is refused by name."""
+"""Vocabulary of the grammar: macros, functions, relations and environments, including those that are refused."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ EQUALS = frozenset(("equiv", "triangleq", "coloneqq", "doteq", "stackrel", "colo
 TIMES = frozenset("cdot times ast odot bullet".split())
 DOUBLE_SIGNS = {"pm": "either_sign", "mp": "other_sign"}
 INTEGRALS = {"int": 1, "oint": 1, "iint": 2, "iiint": 3}
-"""Signs of integrals, and over how many letters they go; all may go over one."""
+"""Integral signs -> the largest number of variables of integration."""
 BETWEEN = {"otimes": "tensor", "circ": "composed", "wedge": "wedge"}
-"""Signs between two factors that are no multiplication, and what these are called."""
+"""Signs between two factors other than multiplication -> the function that represents them in trees."""
 OF_SETS = {"cup": "union", "cap": "intersection", "setminus": "without"}
-"""Signs between products, and what these are called."""
+"""Signs between two products -> the function that represents them in trees."""
 SIGNS = TIMES | frozenset(("+", "-", "=", *DOUBLE_SIGNS, *BETWEEN, *OF_SETS))
 OF_VECTORS = {"times": "cross", "cdot": "dot", "bullet": "dot"}
-"""Signs that are products of another kind between vectors, and what these are called."""
+"""Multiplication signs -> the function that represents them in trees if they stand between vectors."""
 RELATIONS = {
     **dict.fromkeys(("<", "lt"), "less"),
     **dict.fromkeys((">", "gt"), "greater"),
@@ -73,11 +73,11 @@ RELATIONS = {
     "in": "element",
     "notin": "not_element",
 }
-"""Signs of relations other than equality, and what these are called."""
+"""Relation signs other than equality -> the function that represents them in trees."""
 CONNECTIVES = frozenset(
     "implies iff Rightarrow Leftrightarrow Longrightarrow Longleftrightarrow therefore because forall".split()
 )
-"""Signs that stand between relations, as words do."""
+"""Signs that connect relations and are treated like words between formulas."""
 ELLIPSES = frozenset("ldots dots cdots vdots ddots dotsc dotsb".split())
 OPTIMA = {
     **dict.fromkeys(("min", "minimize", "minimise"), "minimum"),
@@ -87,7 +87,7 @@ OPTIMA = {
     "inf": "infimum",
     "sup": "supremum",
 }
-"""What is sought over what stands below, and what it is called."""
+"""Operators over a subscript, such as a minimum -> the function that represents them in trees."""
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
 NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
@@ -96,9 +96,9 @@ NOT_COMPARED |= frozenset(
 NOT_COMPARED |= frozenset("hessian transform open_interval binomial factorial".split())
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
 NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))
-"""Functions in a tree that are read, and held against nothing."""
+"""Functions in trees that are read but cannot be compared with derived formulas."""
 NOT_NUMBERS = frozenset(("ellipsis", "infinity", "otherwise", "nabla", "star", "dagger"))
-"""Names in a tree that stand for no number."""
+"""Names in trees that do not denote numbers."""
 REFUSED = {
     "not": "a negation",
     "exists": "a quantifier",
@@ -112,53 +112,53 @@ SYSTEMS = frozenset(
 )
 OPENING = frozenset(("{", "lbrace", "lbrack", "langle"))
 CLOSING = frozenset(("}", "rbrace", "rbrack", "rangle"))
-"""Brackets that are macros."""
+"""Opening and closing brackets that are macros."""
 STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf"))
 NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
 FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
-"""Letters behind which a place, or an angle, is still part of what a function is taken of."""
+"""Letters of frequencies: with one of `PLACES` after it, such a letter still belongs to the argument of a function."""
 INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
-"""Macros that are read as words where they stand in an index."""
+"""Macros that are read as words in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
 ATOMS = frozenset("sum prod frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
 ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
-"""Functions that are misread as products of letters where their backslash is lost, longer names first."""
+"""Functions that look like products of letters without their backslash; longer names come first."""
 CALLED = tuple("eig diag rank trace dim ker span adj sat sinc erf".split())
-"""Functions that are misread as products of letters in front of a bracket."""
+"""Names of functions that look like products of letters before a bracket."""
 OPERATOR_NAMES = frozenset("Pr dim ker deg gcd hom lg".split())
-"""Functions that LaTeX has a macro for, and are only known by name."""
+"""Functions of unknown meaning for which LaTeX has a macro."""
 UNKNOWN = frozenset(
     "tr trace rank diag sinc sec csc cot Re Im erf sn cn dn am arg sup inf grad div rot curl cov var mod".split()
 )
-"""Functions that are printed upright and are not in the grammar."""
+"""Functions of unknown meaning that are printed upright."""
 SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
 SAID |= frozenset(("subject to", "such that", "s.t.", "s.t", "i.e.", "i.e", "since", "while", "as", "etc"))
 SAID |= frozenset(
     "et ou si avec où pour quand donc soit lorsque und oder mit für wenn dove per con para cuando".split()
 )
-"""Words between formulas."""
+"""Words between formulas, in several languages."""
 SHORT_WORDS = frozenset("in on at by of is".split())
-"""Words between formulas that are products of letters where they are not set upright."""
+"""Words between formulas that would be read as products of letters if they were not set upright."""
 UNITS = frozenset(
     "m km cm mm s ms min h kg g N kN J W kW K A V Hz rad mrad deg m/s km/s m/s^2 rad/s kg/s "
     "Nm Pa kPa MPa GHz kHz MHz mol C T AU kWh rpm F L".split()
 )
 COUNTERS = frozenset("i j k l m n N M K".split())
-"""Letters of which the number of a member of a sequence is made."""
+"""Letters of which the index of a member of a sequence is composed."""
 LAPSED = frozenset("phi varphi Phi varPhi psi Psi chi".split())
-"""Letters of functions of the time that has passed, behind which a difference of times is no factor."""
+"""Letters of functions of elapsed time; a difference of times in brackets after such a letter is not a factor."""
 ARGUED = LAPSED | frozenset("f F".split())
-"""Letters of functions, behind which a product in brackets is no factor."""
+"""Letters of functions; a product in brackets after such a letter is not a factor."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())
-"""Letters for which a bracket behind them is no factor where time and something else stand in it."""
+"""Letters after which a bracket with time and another term, as in u(t - T), is not a factor."""
 FIELDS, OPERATORS = frozenset("f g h F G X".split()), frozenset("D H J".split())
-"""Letters of functions along which something is differentiated, and of what is applied to functions."""
+"""Letters of vector fields along which functions are differentiated, and of operators that act on functions."""
 TRANSFORMS = "ELFZ"
-"""Letters of transforms and means, behind which braces are no factor."""
+"""Letters of transforms and expected values; braces after such a letter are not a factor."""
 ANGLES = frozenset("theta vartheta phi varphi psi E M".split())
-"""Letters of angles, of which time is no factor."""
+"""Letters of angles; a time after such a letter is not a factor of the argument."""
 OF_ECCENTRICITIES = frozenset((2, 3, 4, 6, 8))
-"""Powers of e that are those of an eccentricity, not of the base of logarithms."""
+"""Exponents for which a power of e is a power of the eccentricity, not of the base of the natural logarithm."""

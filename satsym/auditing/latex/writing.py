@@ -1,4 +1,4 @@
-"""Formulas written again in the notation that they were printed in: LaTeX, or plain text."""
+"""Writing of formulas in the notation in which they were printed: LaTeX or plain text."""
 
 from __future__ import annotations
 
@@ -62,23 +62,23 @@ _RUNS_ON = re.compile(
     r"\\(?:sinh?|cosh?|tanh?|ln|arc[a-z]+) "
     rf"(?:[A-Za-z][^ |]*\|(?:[A-Za-z]|\\(?:{_GREEK})\b)|\\[^ |]+\|\\(?:{_GREEK})\b)"
 )
-"""A function of a letter without brackets, in front of another letter."""
+"""Pattern of a function of a letter without brackets before another letter."""
 
 
 def in_latex(letters: Mapping[str, str]) -> Writer:
-    """Writes in LaTeX, with these letters by name."""
+    """Return a writer of formulas in LaTeX that prints names by the given letters."""
     tex = _Tex(letters)
     return lambda tree: " = ".join(tex.of(side)[0] for side in cells(tree))
 
 
 def in_plain(letters: Mapping[str, str]) -> Writer:
-    """Writes in plain notation, with ``^`` for powers."""
+    """Return a writer of formulas in plain notation, with ``^`` for powers."""
     names: dict[str, Node] = {name: Sym(text) for name, text in letters.items()}
     return lambda tree: written(each(tree, lambda side: substituted(side, names))).replace("**", "^")
 
 
 class _Tex:
-    """Writes nodes in LaTeX; each method gives the text, and how tightly it binds."""
+    """Writer of trees in LaTeX; each method returns the text and its precedence."""
 
     def __init__(self, letters: Mapping[str, str]) -> None:
         self._letters = letters
@@ -279,4 +279,4 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "both": _Tex._both,
     "cases": _Tex._cases,
 }
-"""Functions that are not written as a name in front of brackets, and how each is."""
+"""Functions that are not written as a name with brackets -> the method that writes them."""

@@ -1,1 +1,1 @@
-"""Ledgers: what documents print, read from TOML and checked."""
+"""Ledgers: TOML files that list what a document prints; they are read and checked here."""

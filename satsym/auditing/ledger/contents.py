@@ -1,4 +1,4 @@
-"""A ledger, read: what a document prints, and what each thing is to be held against."""
+"""The contents of a ledger: what a document prints, and what each printed item is compared with."""
 
 from __future__ import annotations
 
@@ -17,41 +17,45 @@ from satsym.formula.tree import Call, Equality, Formula, Node, Text, calls_in, c
 
 @dataclass(frozen=True)
 class Row:
-    """One printed thing, read."""
+    """A row of a ledger: one printed item of a document, such as an equation, a number or a claim."""
 
     table: RowTable
-    """As the ledger has it."""
+    """The keys of the row in the ledger."""
     key: str
-    """The item and its part: how other rows name it."""
+    """Item and part, by which other rows refer to this row."""
     place: str
-    """File and line where it stands."""
+    """File and line of the row."""
     printed: Formula | None = None
-    """The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix),
-    or ``None`` where what is printed is not a formula."""
+    """Printed formula in the document's symbols: an expression, an equality, or rows of expressions (a matrix).
+
+    ``None`` if the printed item is not a formula.
+    """
     holds: Node | Equality | None = None
-    """What it is held against, in our names; ``None`` where a proposition judges."""
+    """Derived formula that the row is compared with, in the names of the models; ``None`` if a proposition judges the
+    row."""
     follows: Node | Equality | None = None
-    """How the document says it follows, over printed rows, in the document's symbols."""
+    """How the row follows from other rows according to the document, in the document's symbols."""
     claims: Proposition | None = None
-    """The proposition that has to hold: what a claim prints, or what another row is held against."""
+    """The proposition that has to hold: the printed claim, or the one that a row of another kind is judged by."""
     because: Proposition | None = None
     produced: Proposition | None = None
-    """The reason given, and what tells that the printed algorithm produces it."""
+    """`because` is the reason that the document gives; `produced` tests whether the printed algorithm causes the
+    result."""
     why: tuple[str | Proposition, ...] = ()
-    """A sentence that explains why it is not so: texts, and terms to be measured between them."""
+    """Explanation why the row is wrong, as texts with terms to be evaluated between them."""
     why_id: tuple[str | Proposition, ...] = ()
-    """The explaining sentence in Indonesian, where the ledger has it."""
+    """The explanation in Indonesian; empty if the ledger has none."""
     says_id: str = ""
-    """What it is about in Indonesian, where the ledger has it."""
+    """Subject of the row in Indonesian; empty if the ledger does not state it."""
 
     @property
     def says(self) -> Said:
-        """What it is about, in both languages."""
+        """Subject of the row in both languages."""
         return Said(self.table.says, self.says_id)
 
     @property
     def uses(self) -> list[str]:
-        """Keys of the rows it is said to follow from."""
+        """Keys of the rows that the row follows from."""
         if not isinstance(self.table.follows, str):
             return list(self.table.follows)
         return list(dict.fromkeys(row_key(call) for call in calls_in(self.follows) if call.function == "row"))
@@ -59,7 +63,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Ledger:
-    """What a document prints."""
+    """A ledger that was read: the rows of a document with its notation, symbols and numbers."""
 
     path: Path
     name: str
@@ -69,13 +73,13 @@ class Ledger:
     inputs: Mapping[str, str]
     rows: tuple[Row, ...]
     model: str = ""
-    """The model whose names are its own, without the folder."""
+    """Name of the document's model, whose names need no prefix, without the folder."""
     folder: Path | None = None
-    """Where records of derivations lie, beside the shipped ones."""
+    """Folder of derivations that are used in addition to the shipped ones."""
 
     @cached_property
     def models(self) -> tuple[str, ...]:
-        """Derivations that it names, that of the document first."""
+        """Models whose derivations the ledger refers to, that of the document first."""
         trees = [side for row in self.rows for formula in (row.holds, row.follows) for side in cells(formula)]
         trees += [meaning for scope in self.scopes.values() for meaning in scope.meanings.values()]
         texts = [part.value for tree in trees for _, part in walk(tree) if isinstance(part, Text)]
@@ -83,11 +87,11 @@ class Ledger:
         return tuple(dict.fromkeys(filter(None, (self.model, *named))))
 
     def uncovered(self) -> list[str]:
-        """Numbers of the document that have no row."""
+        """Return the numbers of the document's equations etc. for which the ledger has no row."""
         covered = {row.table.item for row in self.rows}
         return [number for number in self.document.numbers if number not in covered]
 
 
 def row_key(call: Call) -> str:
-    """The key that ``row['item']`` or ``row['item', 'part']`` names."""
+    """Return the key of the row that ``row['item']`` or ``row['item', 'part']`` refers to."""
     return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))

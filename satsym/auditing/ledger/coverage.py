@@ -1,7 +1,8 @@
-"""What a text has, numbered or asserted, and which of it has a row in the ledger.
+"""Coverage of a document's text: which numbered items and which assertions have a row in the ledger.
 
-What was found is kept beside the ledger, in ``contents.toml`` (of a ledger that is one file in ``NAME.contents.toml``),
-with the digest of the text: for each entry the row that has it, ``none: `` and why it needs none, or nothing.
+The result is stored next to the ledger in ``contents.toml``, or ``NAME.contents.toml`` for a ledger of one file, with
+the digest of the text. The value of each entry is the row that covers it, or ``none: `` and the reason why it needs no
+row, or empty.
 """
 
 from __future__ import annotations
@@ -26,14 +27,17 @@ from satsym.wording import printable
 
 KINDS = ("formulas", "figures", "tables", "sections", "sentences")
 NONE = "none: "
-"""Begins the reason why an entry needs no row."""
+"""Prefix of the reason why an entry needs no row."""
 
 _TELLING = 12
-"""Signs that a quotation needs to tell which sentence it is from."""
+"""Number of characters that a quotation needs to identify the sentence that it is taken from."""
 _REPEATED = 40
-"""Signs that it needs to tell each sentence that says the same; a shorter one is taken where it is found first."""
+"""Number of characters from which a quotation is assigned to all sentences that contain it.
+
+A shorter quotation is assigned to the first one only.
+"""
 _NEAR_CHARACTERS = 1000
-"""Signs between the longest piece of a quotation and its other pieces, at most."""
+"""Largest number of characters between the longest piece of a quotation and its other pieces."""
 _NUMBER = r"[A-Z]?\d{1,2}(?:\.\d{1,3})*[a-e]?"
 _FORMULA = re.compile(rf"(?:\\tag\{{\(?|(?<![\w)])\()({_NUMBER})[)}}]+[\s$.,;]*$")
 _CITING = re.compile(r"(?:persamaan|pers\.?|equations?|eqs?\.|dan|and|sampai|to|[-\u2013])\s*$", re.IGNORECASE)
@@ -64,18 +68,18 @@ _ASSERTS = re.compile(
 
 @dataclass(frozen=True)
 class Coverage:
-    """A text, or what was kept of one, held against the rows.
+    """Coverage of a text by the rows of a ledger, as computed from the text or as stored.
 
     Attributes
     ----------
     digest
-        Of the text, SHA-256.
+        SHA-256 digest of the text.
     same
-        Whether what is kept with the ledger was found in this text; ``None`` where nothing is kept.
+        Whether the stored coverage belongs to this text; ``None`` if none is stored.
     found
-        By kind: name of the entry -> the row that has it, ``none: `` with the reason, or nothing.
+        Kind -> name of the entry -> the row that covers it, or ``none: `` with a reason, or empty.
     unquoted
-        Rows, and pieces of their ``original`` that the text does not have; only known with the text.
+        Keys of rows with pieces of their ``original`` that the text does not contain; empty without a text.
     """
 
     digest: str
@@ -84,28 +88,28 @@ class Coverage:
     unquoted: tuple[tuple[str, str], ...] = ()
 
     def counts(self, kind: str) -> tuple[int, int, int, int]:
-        """How many entries there are, have a row, need none, have neither."""
+        """Return the counts of all entries, of those with a row, of those that need no row, and of missing ones."""
         rows = list(self.found[kind].values())
         excused, missing = sum(row.startswith(NONE) for row in rows), rows.count("")
         return len(rows), len(rows) - excused - missing, excused, missing
 
     def missing(self, kind: str) -> list[str]:
-        """Entries that have neither a row nor a reason."""
+        """Return the entries that have neither a row nor a reason why they need none."""
         return [name for name, row in self.found[kind].items() if not row]
 
 
 def place(ledger: Ledger) -> Path:
-    """Where the contents of a ledger's text are kept."""
+    """Return the path of the file in which the coverage of a ledger is stored."""
     return documents.beside(ledger.path, "contents.toml")
 
 
 def kept(ledger: Ledger) -> Coverage | None:
-    """What is kept of the text, if anything is; what names a row that is gone is without one.
+    """Return the stored coverage of a ledger, or ``None``; an entry whose row no longer exists counts as missing.
 
     Raises
     ------
     BadInput
-        With file and line, where a key is unknown or missing.
+        If a key is unknown or missing; the message contains file and line.
     """
     path = place(ledger)
     if not path.exists():
@@ -124,12 +128,12 @@ def kept(ledger: Ledger) -> Coverage | None:
 
 
 def text_of(path: Path) -> str:
-    """A text to measure against.
+    """Return the text of a document, to measure the coverage.
 
     Raises
     ------
     BadInput
-        If it cannot be read.
+        If the file cannot be read.
     """
     try:
         found = path.read_text(encoding="utf-8-sig")
@@ -144,7 +148,7 @@ def text_of(path: Path) -> str:
 
 
 def measured(ledger: Ledger, text: str) -> Coverage:
-    """A text held against the rows; what the rows do not show is taken from what is kept."""
+    """Return the coverage of a text by the rows of a ledger, completed by the stored coverage."""
     digest, before = hashlib.sha256(text.encode()).hexdigest(), kept(ledger)
     names = {kind: dict(_numbered(ledger, text, kind)) for kind in KINDS[:-1]}
     sentences, unquoted = _sentences(ledger, text)
@@ -156,7 +160,7 @@ def measured(ledger: Ledger, text: str) -> Coverage:
 
 
 def to_toml(coverage: Coverage) -> str:
-    """As it is kept."""
+    """Return the contents of the file in which a coverage is stored."""
     lines = [f"text_digest = {json.dumps(coverage.digest)}"]
     for kind in KINDS:
         lines += ["", f"[{kind}]"]
@@ -168,7 +172,7 @@ _quoted = partial(json.dumps, ensure_ascii=False)
 
 
 def _numbered(ledger: Ledger, text: str, kind: str) -> Iterator[tuple[str, str]]:
-    """Numbered things of a kind, and what in the ledger has them; by the name that the ledger uses."""
+    """Yield the numbered items of one kind by the names used in the ledger, with the row that covers each."""
     items = {row.table.item for row in ledger.rows}
     places = {**dict.fromkeys(items), **dict.fromkeys(row.table.where for row in ledger.rows)}
     for entry, names in _headed(text):
@@ -181,7 +185,7 @@ def _numbered(ledger: Ledger, text: str, kind: str) -> Iterator[tuple[str, str]]
 
 
 def _headed(text: str) -> Iterator[tuple[str, list[str]]]:
-    """Kind and possible names of each formula, caption and heading, in order."""
+    """Yield kind and possible names of each formula, caption and heading of a text, in order."""
     chapter, section, sign = "", "", ""
     for raw in text.splitlines():
         line = _MARKS.sub("", raw).strip(" #*\t")
@@ -209,7 +213,7 @@ def _headed(text: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _names(plain: str, number: str, within: str, section: str) -> list[str]:
-    """Numbers that every section begins anew are named with it."""
+    """Return the possible names of a number; a number without a dot may start anew in each section."""
     return [within, plain] if section and "." not in number else [plain]
 
 
@@ -221,7 +225,7 @@ def _arabic(number: str) -> int:
 
 
 def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[str, str]]]:
-    """Sentences that assert something and the row that quotes them, and quotations that are in no sentence."""
+    """Return the sentences that assert something, with the rows that quote them, and the quotations not found."""
     sentences = _SENTENCE.split(" ".join(re.sub(r"(?<=[a-z])-\n\s*(?=[a-z])", "", _MARKS.sub("\n", text)).split()))
     squashed = [_squashed(sentence) for sentence in sentences]
     ends = list(accumulate(map(len, squashed)))
@@ -251,7 +255,7 @@ def _places(sought: str, whole: str) -> list[int]:
 
 
 def _in_words(piece: str, whole: str) -> bool:
-    """Whether the text has the words of a quotation: its formulas may have been read in another way."""
+    """Return whether the text contains the words of a quotation, whose formulas may be transcribed differently."""
     prose: list[str] = _PROSE.findall(piece)
     return bool(prose) and all(_squashed(words) in whole for words in prose)
 
@@ -262,7 +266,7 @@ def _opening(sentence: str) -> str:
 
 
 def _squashed(text: str) -> str:
-    """Without what reading a page by machine adds or loses: breaks, spaces, accents, mathematical alphabets, TeX."""
+    """Return a text without what optical character recognition may change: breaks, spaces, accents, TeX commands."""
     plain = (
         unicodedata.normalize("NFKD", _LAYOUT.sub("", text))
         .casefold()

@@ -1,4 +1,7 @@
-"""Ledgers by name or by path: a file, or a folder with ``ledger.toml`` and chapters. The shipped ones are folders."""
+"""Location of ledgers by name or path. A ledger is one file, or a folder with ``ledger.toml`` and chapters.
+
+The shipped ledgers are folders.
+"""
 
 from __future__ import annotations
 
@@ -14,39 +17,46 @@ if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
 
 HEAD, CHAPTERS = source_files.LEDGER, "ledger_*.toml"
-"""The files of a folder: a head, with rows or without, and chapters of rows alone, by name."""
+"""Files of a ledger's folder: the main file, and the chapters, which contain only rows and are read in order of name.
+"""
 INDONESIAN = "says.id.toml"
-"""What its rows are about, in Indonesian; a ledger need not have it."""
+"""File with the Indonesian subjects of the rows; it is optional."""
 
 
 def shipped() -> list[Path]:
-    """The ledgers that come with satsym, by name."""
+    """Return the paths of the ledgers that are shipped with satsym, ordered by name."""
     return source_files.documents()
 
 
 def files_of(path: Path) -> list[Path]:
-    """The files of a ledger, the head first."""
+    """Return the files of a ledger, the main file first."""
     return [path / HEAD, *sorted(path.glob(CHAPTERS))] if path.is_dir() else [path]
 
 
 def beside(path: Path, name: str) -> Path:
-    """A file that belongs to a ledger: in its folder, or for one file ``small.toml`` beside it, ``small.NAME``."""
+    """Return the path of a file that belongs to a ledger, in its folder or, for ``small.toml``, at ``small.NAME``."""
     return path / name if path.is_dir() else path.with_suffix(f".{name}")
 
 
 def read_from(path: Path) -> list[Path]:
-    """All files that reading a ledger reads."""
+    """Return all files that are read for a ledger."""
     translated = beside(path, INDONESIAN)
     return [*files_of(path), *([translated] if translated.exists() else [])]
 
 
 def named(path: Path) -> str:
-    """How commands name a ledger: a shipped one by its document, any other by its path."""
+    """Return how commands refer to a ledger: a shipped one by the name of its document, others by their path."""
     return path.name if path in shipped() else str(path)
 
 
 def locate(name_or_path: str) -> Path:
-    """The shipped ledger of a document, or the path that was given."""
+    """Return the path of the shipped ledger of a document, or the given path of a ledger.
+
+    Raises
+    ------
+    BadInput
+        If there is neither a shipped ledger nor a ledger at this path.
+    """
     for path in shipped():
         if path.name == name_or_path:
             return path
@@ -65,7 +75,7 @@ def locate(name_or_path: str) -> Path:
 
 
 def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> None:
-    """Refuse items that no ledger has."""
+    """Raise BadInput for items that no ledger contains."""
     known = dict.fromkeys(name for x in ledgers for row in x.rows for name in (row.table.item, row.key))
     for item in items:
         refuse_unknown("there is no row", item, known)

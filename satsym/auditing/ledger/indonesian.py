@@ -1,4 +1,4 @@
-"""What rows are about in Indonesian: a flat table beside the ledger, ``"what a row says" = "the same so"``."""
+"""Indonesian subjects of rows, from a flat table next to the ledger: ``"English subject" = "Indonesian subject"``."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _CLAUSE = re.compile(r"[;:] ")
 
 
 def added(rows: Iterable[Row], path: Path) -> list[Row]:
-    """The rows, each with what the table has for it; as they are where there is no such file.
+    """Return the rows with their Indonesian subjects, or unchanged if the file does not exist.
 
     Raises
     ------
     BadInput
-        With file and line, where an entry is no text or nothing that a row says.
+        If an entry is not a text, or no row has this subject; the message contains file and line.
     """
     rows = list(rows)
     if not path.exists():

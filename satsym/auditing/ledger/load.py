@@ -1,7 +1,6 @@
-"""Reading a ledger: every formula of it is read and checked before anything is derived or any library loaded.
+"""Reader of ledgers, which checks every formula before anything is derived or a large library is loaded.
 
-The order is that of cost: first everything that is text, then
-the units, for which pint is loaded.
+Checks are made in order of their cost: all texts first, then the units, for which pint is loaded.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ def read(path: Path) -> Ledger:
     Raises
     ------
     BadInput
-        With one line, ``FILE:LINE: what is wrong; what to do``.
+        If the ledger is not valid; the message is one line, ``FILE:LINE: what is wrong; what to do``.
     """
     parts = _parts(path)
     allowance = budget.Allowance(counted=path not in documents.shipped())
@@ -52,7 +51,7 @@ def _read(path: Path, parts: Sequence[Part]) -> Ledger:
 
 
 def _parts(path: Path) -> list[Part]:
-    """The files of a ledger; chapters have rows only."""
+    """Return the files of a ledger, of which chapters may contain only rows."""
     found: list[Part] = []
     for file in documents.files_of(path):
         try:
@@ -75,7 +74,7 @@ def _parts(path: Path) -> list[Part]:
 
 
 class _Reader:
-    """Reads table by table; what is wrong is told with the line it stands in."""
+    """Reader of a ledger table by table; errors are reported with the line where they occur."""
 
     def __init__(self, path: Path, parts: Sequence[Part]) -> None:
         self._path, self._parts = path, parts
@@ -92,7 +91,7 @@ class _Reader:
             )
 
     def ledger(self, name: str) -> Ledger:
-        """The ledger, checked."""
+        """Return the checked ledger."""
         self._refuse_unknown_tables()
         document = self._document()
         with self._telling("document", "model"):
@@ -137,7 +136,7 @@ class _Reader:
     def _entries(
         self, table: str, read_entry: Callable[..., Any], into: dict[str, Any] | None = None
     ) -> dict[str, Any]:
-        """The entries of a table of names."""
+        """Return the entries of a table that maps names to values."""
         found = {} if into is None else into
         for name, entry in self._mapping(table).items():
             with self._telling(table, name):
@@ -201,7 +200,7 @@ class _Reader:
         return replace(row, **found, **self._explanations(index, row, scope, own=True))
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
-        """Read a row that a proposition judges: a claim prints it, a row of another kind names it with ``holds``."""
+        """Read a row that is judged by a proposition: a claim prints it, any other row states it as ``holds``."""
         table, words = row.table, measurements.words(scope.meanings)
         own = table.kind != "claim"
         with self._telling("row", "printed", index, row.key):
@@ -223,7 +222,7 @@ class _Reader:
         return replace(row, **found, **self._explanations(index, row, scope, own=own))
 
     def _explanations(self, index: int, row: Row, scope: Scope, *, own: bool) -> dict[str, Any]:
-        """The sentence for people in each language that it is written in."""
+        """Return the explanation of a row in each language in which the ledger contains it."""
         found: dict[str, Any] = {}
         for key in ("why", "why_id"):
             with self._telling("row", key, index, row.key):
@@ -276,7 +275,7 @@ class _Reader:
 
     @contextmanager
     def _telling(self, table: str, key: str, index: int = 0, row: str = "") -> Iterator[None]:
-        """Adds to what is wrong where it stands."""
+        """Add file, line and key to any error that is raised in this context."""
         try:
             yield
         except WrongKey as error:

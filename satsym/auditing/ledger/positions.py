@@ -1,4 +1,4 @@
-"""Where in its files a table or a key of a ledger stands, for messages: the library that reads TOML does not say."""
+"""Lines of tables and keys in the files of a ledger, for error messages; the TOML library does not provide them."""
 
 from __future__ import annotations
 
@@ -12,34 +12,37 @@ from typing import Any
 from satsym.wording import printable
 
 _HEADER = re.compile(r"\s*+\[\[?([^\[\]]++)\]\]?\s*+(?:#.*)?$")
-"""Possessive, so that a line of nothing but spaces after a bracket is gone through once."""
+"""Pattern of a table header; possessive, so that long runs of spaces after a bracket are read only once."""
 _KEY = re.compile(r"""\s*("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)\s*=""")
 _DELIMITER = re.compile(r'"""|' + r"'''")
 
 
 @dataclass(frozen=True)
 class Part:
-    """A file of a ledger."""
+    """A file of a ledger with its contents."""
 
     path: Path
     tree: dict[str, Any]
-    """And what is in it."""
+    """Contents of the file."""
     first: int
-    """Number of the rows in the files before it."""
+    """Number of rows in the files before this one."""
 
     @cached_property
     def _lines(self) -> dict[tuple[str, int, str], int]:
         return lines(self.path.read_text(encoding="utf-8-sig"))  # only read where a place is asked for
 
     def place(self, table: str, index: int = 0, key: str = "") -> str:
-        """File and line of a key in the n-th table of a name in the whole ledger, else of the table, else the first."""
+        """Return file and line of a key in the n-th table of a name in the whole ledger.
+
+        If the key does not exist, the line of the table is returned, otherwise line 1.
+        """
         own, found = index - self.first if table == "row" else index, self._lines
         line = found.get((table, own, key)) or found.get((table, own, ""), 1)
         return f"{printable(str(self.path), 200)}:{line}"
 
 
 def lines(text: str) -> dict[tuple[str, int, str], int]:
-    """Line numbers, from 1, in a text that is valid TOML: of the n-th table of a name, and of each key in it."""
+    """Return the line numbers of all tables and keys in a valid TOML text, by table, number of the table, and key."""
     found: dict[tuple[str, int, str], int] = {}
     seen: Counter[str] = Counter([""])
     table, inside = "", ""

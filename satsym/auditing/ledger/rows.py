@@ -1,4 +1,4 @@
-"""Reading one row of a ledger: its formulas in the safe language."""
+"""Reader of the formulas of one row of a ledger."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FORMULAS = ("equation", "algorithm")
 
 
 def printed(table: RowTable, scope: Scope) -> Formula | None:
-    """The printed formula; ``None`` for kinds of rows that print none."""
+    """Return the printed formula of a row; ``None`` for kinds of rows that print no formula."""
     if table.kind == "number":
         quantities.printed_number(_one_text(table))
     if table.kind not in (*FORMULAS, "matrix"):
@@ -42,7 +42,7 @@ def printed(table: RowTable, scope: Scope) -> Formula | None:
 
 
 def readable(table: RowTable, scope: Scope) -> Formula | None:
-    """The printed formula of a row that a proposition judges; ``None`` where what is printed is none."""
+    """Return the printed formula of a row that a proposition judges; ``None`` if the printed text is not a formula."""
     try:
         return printed(table, scope)
     except BadInput:
@@ -52,7 +52,7 @@ def readable(table: RowTable, scope: Scope) -> Formula | None:
 def held_against(
     table: RowTable, derived: Mapping[str, Node], own: Collection[str], inputs: Mapping[str, str]
 ) -> Node | Equality:
-    """The formula that a row is held against."""
+    """Return the formula that a row is compared with."""
     if vocabulary.is_address(table.holds):
         formula: Node | Equality = Text(table.holds.strip())
     else:
@@ -65,7 +65,7 @@ def held_against(
 
 
 def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], scope: Scope) -> Node | Equality:
-    """How a row is said to follow from others."""
+    """Return the formula by which a row follows from other rows."""
     formula = _with(reading.statement(str(table.follows), judging=True), derived)
     _refuse_unknown(formula, scope, own)
     return formula
@@ -78,7 +78,7 @@ def _one_text(table: RowTable) -> str:
 
 
 def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None = None) -> None:
-    """Refuse symbols that the notation lacks; where the ledger's own names are given, those of derivations will do."""
+    """Refuse symbols that are not in the notation of the row or, if given, among the names of derivations."""
     for name in sorted(names_in(formula)):
         if not scope.knows(name) and (own is None or name not in own):
             raise BadInput(f"{shown(name)} is not a symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")

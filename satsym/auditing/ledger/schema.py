@@ -1,4 +1,4 @@
-"""The keys of a ledger and the type of each. Tables are strict: an unknown key is refused by name."""
+"""The keys of a ledger and their types. Unknown keys are refused by name."""
 
 from __future__ import annotations
 
@@ -33,11 +33,14 @@ Flag = Annotated[bool, Meta(description="true or false")]
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What all tables of a ledger share."""
+    """Base of all tables of a ledger, which refuses unknown keys."""
 
 
 class DocumentTable(Table, frozen=True):
-    """The document: ``numbers`` lists what it numbers, ``model`` is where bare names and units are looked up."""
+    """Table of the document.
+
+    ``numbers`` lists the numbers of its equations etc.; ``model`` is the model whose names and units need no prefix.
+    """
 
     key: Text
     title: Text
@@ -49,19 +52,19 @@ class DocumentTable(Table, frozen=True):
 
 
 class SymbolTable(Table, frozen=True):
-    """A symbol that no derivation has: its unit (empty where it is not known), and whether it is positive."""
+    """Table of a symbol that no derivation defines: its unit, empty if unknown, and whether it is positive."""
 
     unit: Text = ""
     positive: Flag = False
 
 
 class RowTable(Table, frozen=True, rename={"follows": "from"}):
-    """One printed thing, and what it is held against.
+    """Table of one printed item, and what it is compared with.
 
-    Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
-    it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
-    ``why`` is a sentence for people, with measured terms in braces, that explains why it is not confirmed;
-    ``why_id`` is the same in Indonesian. ``draft`` says that no person has confirmed the row yet.
+    For a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows from
+    which it is concluded, and ``produced`` a proposition that is true if the claim is caused by the printed algorithm
+    instead of the problem. ``why`` is an explanation for readers why the row is not confirmed, with terms to be
+    evaluated in braces, and ``why_id`` the same in Indonesian. ``draft`` marks a row that no person has confirmed.
     """
 
     item: Text
@@ -86,7 +89,11 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
 
 
 class ContentsTable(Table, frozen=True):
-    """What a text has, by kind: name -> the row that has it, or ``none: `` and the reason why it needs none."""
+    """Table of the stored coverage of a text.
+
+    For each kind it maps the name of an entry to the row that covers it, or ``none: `` and the reason why it needs no
+    row.
+    """
 
     text_digest: Text
     formulas: Formulas = {}
@@ -104,7 +111,7 @@ _WORDS = {
 
 
 class WrongKey(BadInput):
-    """A key is unknown, missing or of the wrong type; ``key`` says which."""
+    """A key of a ledger is unknown, missing or of the wrong type; ``key`` is its name."""
 
     def __init__(self, key: str, message: str) -> None:
         super().__init__(f"{printable(key)}: {message}")
@@ -112,7 +119,7 @@ class WrongKey(BadInput):
 
 
 def table(tree: Any, kind: type[Any]) -> Any:
-    """A table of the ledger, checked."""
+    """Return a table of the ledger as an object, after its keys and types are checked."""
     if not isinstance(tree, dict):
         raise WrongKey("", f"got {shown(tree)}; write a table")
     fields = _fields(kind)  # type: ignore[arg-type]

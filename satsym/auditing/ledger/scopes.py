@@ -1,4 +1,4 @@
-"""Scopes: what a document's symbols mean in our names, section by section."""
+"""Scopes: the meanings of a document's symbols in the names of the models, for each part of the document."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 LISTS = ("states", "controls", "outputs")
-"""Keys of a scope that say in which order the document numbers things."""
+"""Keys of a scope that state the order in which the document numbers states, controls and outputs."""
 CONSTANTS = frozenset({"I", "pi"})
-"""Names that mean the same everywhere: the imaginary unit and the number."""
+"""Names with the same meaning everywhere: the imaginary unit and the number pi."""
 
 
 @dataclass(frozen=True)
@@ -22,33 +22,33 @@ class Scope:
     """The notation of a part of a document."""
 
     name: str
-    """As the ledger has it."""
+    """Name of the scope in the ledger."""
     meanings: Mapping[str, Node]
-    """The document's symbol -> our expression."""
+    """Symbol of the document -> its meaning, an expression in the names of the models."""
     orders: Mapping[str, tuple[str, ...]]
-    """``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one."""
+    """``states``, ``controls``, ``outputs`` -> symbols in the order of the document, as far as the ledger states it."""
 
     def knows(self, name: str) -> bool:
-        """Whether a printed formula may use the name."""
+        """Return whether a printed formula may contain a name."""
         return name in self.meanings or name in CONSTANTS
 
     def ours(self, printed: Node) -> Node:
-        """A printed formula in our names."""
+        """Return a printed formula in the names of the models."""
         return Scales().checked(substituted(printed, self.meanings))
 
     def family(self, name: str) -> list[str]:
-        """Symbols that differ from this one by their index alone, as ``x1`` and ``x2`` do; then the others."""
+        """Return all other symbols; first those that differ only by the index, as ``x1`` and ``x2``."""
         stem = _stem(name)
         others = [symbol for symbol in self.meanings if symbol != name]
         return sorted(others, key=lambda symbol: (_stem(symbol) != stem, others.index(symbol)))
 
     def is_slip(self, one: str, other: str) -> bool:
-        """Whether two symbols differ by an index alone."""
+        """Return whether two symbols differ only by an index."""
         return _stem(one) == _stem(other)
 
 
 class WrongScope(BadInput):
-    """A scope cannot be read; ``scope`` and ``key`` say where."""
+    """A scope cannot be read; ``scope`` and ``key`` are the names of the table and of the key."""
 
     def __init__(self, scope: str, key: str, message: str) -> None:
         super().__init__(f"[scope.{scope}] {key}: {message}" if key else f"[scope.{scope}]: {message}")
@@ -56,7 +56,7 @@ class WrongScope(BadInput):
 
 
 def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node]) -> dict[str, Scope]:
-    """All scopes of a ledger, each with what it extends."""
+    """Return all scopes of a ledger, each including the scope that it extends."""
     found: dict[str, Scope] = {}
 
     def resolve(name: str, asking: tuple[str, ...]) -> Scope:
@@ -110,7 +110,7 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
 
 
 def self_named(found: Mapping[str, Scope]) -> set[str]:
-    """Symbols that a scope maps to themselves: the document's own, which no derivation need know."""
+    """Return the symbols that a scope maps to themselves; no derivation needs to define them."""
     return {key for scope in found.values() for key, value in scope.meanings.items() if value == Sym(key)}
 
 

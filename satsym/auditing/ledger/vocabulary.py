@@ -1,4 +1,4 @@
-"""Which names a ledger may use for derived things: those of the derivations that it names, and its own."""
+"""The names that a ledger may use for derived quantities: those of the derivations it refers to, and its own."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _WITHIN = re.compile(r"(?<![A-Za-z0-9_])([a-z][a-z0-9_]{0,99}):[A-Za-z][A-Za-z0-
 
 
 def is_address(text: str) -> bool:
-    """Whether a text is ``model:step.equation``."""
+    """Return whether a text is an address, ``model:step.equation``."""
     return ADDRESS.match(text.strip()) is not None
 
 
 def models_in(tree: Any) -> Iterator[str]:
-    """Models that addresses begin with, wherever they stand in the tables of a ledger."""
+    """Yield the models of all addresses in the tables of a ledger."""
     if isinstance(tree, str):
         yield from _WITHIN.findall(tree)
     elif isinstance(tree, dict | list):
@@ -32,7 +32,7 @@ def models_in(tree: Any) -> Iterator[str]:
 
 
 def names_of(model: str) -> Collection[str]:
-    """The names that the derivation of a model has; none where there is no such derivation."""
+    """Return the names that the derivation of a model defines; empty if there is no such derivation."""
     return shelf.find(model).names if shelf.path_of(model) else ()
 
 
@@ -56,7 +56,7 @@ def check(tree: Formula, own: Collection[str]) -> None:
 
 @cache
 def _shipped() -> frozenset[str]:
-    """The names of all derivations that come with satsym: such as a scope may have that no row names a model of."""
+    """Return the names of all shipped derivations; a scope may use them even if no row refers to the model."""
     return frozenset(name for model in source_files.models() for name in names_of(model))
 
 

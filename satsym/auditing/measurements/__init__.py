@@ -1,8 +1,8 @@
-"""What propositions measure: quantities of models, instances, motions, families and printed programs, by name.
+"""Measurements: functions for propositions about models, instances, motions, families and printed programs.
 
-A measurement is a function that returns a number, a list, a matrix, a record (a state, a trajectory), or a property
-that textbooks name, of what it is given. It never sees what is printed and gives no verdict. Each public function of a
-module of this package is one; without parameters it is a family, a convention or a constant, made once.
+A measurement returns a number, list, matrix, record (e.g. a state or trajectory), or a property with a textbook name.
+It never sees what is printed, and gives no verdict. Each public function in a module of this package is a measurement;
+a function without parameters is a family, convention or constant and is evaluated once.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ _VALUES: dict[str, Callable[[], Any]] = {}
 
 
 def words(symbols: Collection[str] = ()) -> Words:
-    """What a proposition may name, in a notation with these symbols."""
+    """Return the words that a proposition may use in a notation with the given symbols."""
     _load()
     return Words(_FUNCTIONS, _VALUES, symbols)
 
 
 def enter(function: Callable[..., Any]) -> None:
-    """Enter a measurement under its name, without the underscore of one that Python has; a value in capitals."""
+    """Register a measurement by its name without trailing underscore; a function without parameters in capitals."""
     if inspect.signature(function).parameters:
         name, registry = function.__name__.rstrip("_"), _FUNCTIONS
     else:

@@ -1,4 +1,4 @@
-"""Functions of numbers, lists and curves, exact where their arguments are."""
+"""Functions of numbers, lists and curves; results are exact if the arguments are."""
 
 from __future__ import annotations
 
@@ -16,37 +16,37 @@ from satsym.auditing.propositions.values import Undecided, is_exact
 
 
 def abs_(x: Any) -> Any:
-    """Size of a number, of each point of a curve."""
+    """Return the absolute value of a number, or of each point of a curve."""
     return abs(x)
 
 
 def re(z: Any) -> Any:
-    """Real part."""
+    """Return the real part."""
     return z.as_real_imag()[0] if is_exact(z) else np.real(z)
 
 
 def im(z: Any) -> Any:
-    """Imaginary part."""
+    """Return the imaginary part."""
     return z.as_real_imag()[1] if is_exact(z) else np.imag(z)
 
 
 def min_(values: Sequence[Any]) -> Any:
-    """The smallest of a list, or of a curve."""
+    """Return the smallest entry of a list or curve."""
     return _extreme(values, -1)
 
 
 def max_(values: Sequence[Any]) -> Any:
-    """The largest of a list, or of a curve."""
+    """Return the largest entry of a list or curve."""
     return _extreme(values, 1)
 
 
 def len_(values: Sequence[Any]) -> int:
-    """How many there are."""
+    """Return the number of entries."""
     return len(values)
 
 
 def sum_(values: Sequence[Any]) -> Any:
-    """The sum of a list."""
+    """Return the sum of a list."""
     total = values[0]
     for entry in values[1:]:
         total = total + entry
@@ -54,7 +54,7 @@ def sum_(values: Sequence[Any]) -> Any:
 
 
 def different(values: Sequence[Any]) -> list[Any]:
-    """The entries of a list, each once."""
+    """Return the entries of a list without repetitions."""
     found: list[Any] = []
     for entry in values:
         if not any(equal(entry, other).holds for other in found):
@@ -63,7 +63,7 @@ def different(values: Sequence[Any]) -> list[Any]:
 
 
 def sqrt(x: Any) -> Any:
-    """Square root."""
+    """Return the square root."""
     if hasattr(x, "sqrt"):
         return x.sqrt()
     if not is_exact(x):
@@ -74,39 +74,39 @@ def sqrt(x: Any) -> Any:
 
 
 def first(values: Sequence[Any]) -> Any:
-    """The first entry."""
+    """Return the first entry."""
     return values[0]
 
 
 def last(values: Sequence[Any]) -> Any:
-    """The last entry."""
+    """Return the last entry."""
     return values[-1]
 
 
 def mean(values: Sequence[float]) -> float:
-    """The mean of a curve."""
+    """Return the mean value of a curve."""
     return float(np.mean(values))
 
 
 def early(curve: Sequence[Any]) -> Sequence[Any]:
-    """The first tenth of a curve."""
+    """Return the first tenth of a curve."""
     return curve[: max(1, len(curve) // 10)]
 
 
 def late(curve: Sequence[Any]) -> Sequence[Any]:
-    """The last tenth of a curve."""
+    """Return the last tenth of a curve."""
     return curve[-max(1, len(curve) // 10) :]
 
 
 def area(curve: Sequence[float], t: Sequence[float]) -> float:
-    """The integral of a curve over its times, by a cubic spline."""
+    """Return the integral of a curve with respect to time, computed with a cubic spline."""
     from scipy.interpolate import CubicSpline
 
     return float(CubicSpline(t, curve).integrate(t[0], t[-1]))
 
 
 def defined(of: Any, **values: float) -> bool:
-    """Whether a formula has a value where its letters have these, those that are not named being 1."""
+    """Return whether a formula has a finite value for the given values of its letters; letters not named are 1."""
     from satsym.symbolic.lookup import formulas
 
     known = {letter: formulas.rational(Fraction(values.get(letter.name, 1))) for letter in of.free_symbols}
@@ -116,7 +116,7 @@ def defined(of: Any, **values: float) -> bool:
 
 
 def turning_points(curve: Sequence[float]) -> int:
-    """How often a curve turns from rising to falling or back."""
+    """Return the number of local maxima and minima of a curve."""
     slopes = np.diff(np.asarray(curve, dtype=float))
     return int((slopes[1:] * slopes[:-1] < 0.0).sum())
 
@@ -131,40 +131,40 @@ def _extreme(values: Any, sign: int) -> Any:
 
 
 def norm(of: Any) -> Any:
-    """The Euclidean length of a list of numbers, or of a column."""
+    """Return the Euclidean norm of a list of numbers or of a column."""
     if isinstance(of, np.ndarray):
         return float(np.linalg.norm(of))
     return sqrt(sum_([entry * entry for entry in _flat(of)]))
 
 
 def cosine(one: Any, other: Any) -> Any:
-    """The cosine of the angle between two lists of numbers, or columns."""
+    """Return the cosine of the angle between two lists of numbers or columns."""
     pairs = zip(_flat(one), _flat(other), strict=True)
     return sum_([a * b for a, b in pairs]) / (norm(one) * norm(other))
 
 
 def sign(x: Any) -> int:
-    """-1, 0 or 1."""
+    """Return the sign of a number: -1, 0 or 1."""
     return ordered(x, 0)
 
 
 def part(values: Sequence[Any], start: int, stop: int) -> Any:
-    """The entries of a list from one place up to, but without, another; the first place is 0."""
+    """Return the entries of a list from index `start` up to, but not including, index `stop`; the first index is 0."""
     return values[start:stop]
 
 
 def steps(values: Sequence[Any]) -> list[Any]:
-    """By how much each entry exceeds the one before it."""
+    """Return the differences between successive entries of a list."""
     return [b - a for a, b in pairwise(values)]
 
 
 def convergence_order(errors: Sequence[float]) -> float:
-    """The power of the step with which errors fall as it is halved again and again, to one decimal."""
+    """Return the order of convergence, to one decimal, from errors at steps that are halved from one to the next."""
     if min(errors[-2:]) <= 0.0:
         raise Undecided("there is no error left to compare")
     return round(math.log2(errors[-2] / errors[-1]), 1)
 
 
 def _flat(of: Any) -> list[Any]:
-    """The entries of a list, an array or a column."""
+    """Return the entries of a list, array or column as a list."""
     return [entry for line in of.tolist() for entry in line] if getattr(of, "is_Matrix", False) else list(of)

@@ -1,4 +1,4 @@
-"""Satellites of the Earth: constants and quantities with units, orbits, and what is seen of them from the ground."""
+"""Earth satellites: physical constants and quantities with units, orbits, and their motion as seen from the ground."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from satsym.wording import refuse_unknown
 
 _MOMENTS = 360
 _STATION = math.radians(30.0), math.radians(20.0)
-"""A ground station: its latitude, and how far it is to the east of where the satellite begins."""
+"""Latitude of a ground station, and its longitude east of the initial point below the satellite, both in radians."""
 _SEED = 11
 
 
 def quantity(text: str) -> Quantity:
-    """A number with a unit, taken as exact."""
+    """Return a number with its unit, taken as exact."""
     return quantities.in_base_units(text)
 
 
 def constant(name: str) -> Quantity:
-    """A published constant, such as ``mu_earth``."""
+    """Return a published constant, such as ``mu_earth``."""
     refuse_unknown("there is no published constant", name, PUBLISHED)
     return quantities.in_base_units(PUBLISHED[name])
 
 
 def orbits() -> Family:
-    """Orbits of the Earth: periods of half a turn of the Earth, one and two; circles and ellipses; all inclinations."""
+    """Return a family of Earth orbits: periods of half, one and two sidereal days, several shapes and inclinations."""
     day, rng = constant("sidereal_day").value, np.random.default_rng(_SEED)
     plain = itertools.product((0.5, 1.0, 2.0), (0.0, 0.1, 0.4), (0.0, 28.5, 63.4, 180.0), (0.0, 270.0))
     random = rng.uniform((0.2, 0.0, 0.0, 0.0), (3.0, 0.6, 180.0, 360.0), (8, 4))
@@ -43,35 +43,35 @@ def orbits() -> Family:
 
 
 def geostationary() -> Record:
-    """The circle in the plane of the equator whose period is that of the Earth's rotation."""
+    """Return the circular equatorial orbit whose period is the sidereal day."""
     return _orbit(constant("sidereal_day").value)
 
 
 def circular(altitude: str) -> Record:
-    """The circular orbit over the equator at an altitude."""
+    """Return the circular equatorial orbit at an altitude."""
     radius = quantity(altitude).value + constant("R_earth").value
     return _orbit(2.0 * math.pi * math.sqrt(radius**3 / constant("mu_earth").value))
 
 
 def gravity(orbit: Record) -> Quantity:
-    """The acceleration by the Earth's attraction at the mean distance of an orbit."""
+    """Return the gravitational acceleration at a distance equal to the semi-major axis of an orbit."""
     return constant("mu_earth") / orbit.part("axis") ** 2
 
 
 def ground_swing(orbit: Record) -> float:
-    """The largest angle (degrees) by which the point below a satellite moves over the Earth in a day."""
+    """Return the largest angle (degrees) that the point below a satellite moves over the Earth in a day."""
     return _swing(_fixed(orbit))
 
 
 def antenna_swing(orbit: Record) -> float:
-    """The largest angle (degrees) by which a ground station has to turn its antenna in a day to follow a satellite."""
+    """Return the largest angle (degrees) by which a ground antenna must turn in a day to follow a satellite."""
     latitude, east = _STATION
     station = np.array([math.cos(latitude) * math.cos(east), math.cos(latitude) * math.sin(east), math.sin(latitude)])
     return _swing(_fixed(orbit) - station[:, None] * constant("R_earth").value)
 
 
 def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
-    """How long a signal takes so many times between the ground and a circular orbit; seen at an elevation (degrees)."""
+    """Return the time of a signal for `legs` paths between ground and circular orbit at an elevation (degrees)."""
     ground, axis = constant("R_earth").value, orbit.part("axis").value
     up = ground * math.sin(math.radians(elevation))
     return Quantity(legs * (math.sqrt(axis**2 - ground**2 + up**2) - up), {"[length]": Fraction(1)}) / constant(
@@ -81,18 +81,18 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
 
 @kept
 def distance_after(orbit: Record, share: float) -> Quantity:
-    """The distance from the Earth's centre after a share of a revolution from the perigee on."""
+    """Return the distance from the Earth's centre after a fraction of a revolution from the perigee."""
     place = _places(orbit, np.array([share * orbit.part("period").value]))
     return Quantity(float(np.linalg.norm(place)), orbit.part("axis").dimension)
 
 
 def seen_latitude(orbit: Record) -> float:
-    """The latitude (degrees) up to which a satellite on a circle over the equator is above the horizon."""
+    """Return the latitude (degrees) up to which a satellite in a circular equatorial orbit is above the horizon."""
     return math.degrees(math.acos(constant("R_earth").value / orbit.part("axis").value))
 
 
 def _orbit(period: float, eccentricity: float = 0.0, inclination: float = 0.0, perigee: float = 0.0) -> Record:
-    """An orbit by its elements, angles in degrees."""
+    """Return an orbit with the given elements, angles in degrees."""
     mu, ground = constant("mu_earth"), constant("R_earth")
     length, time = ground.dimension, constant("sidereal_day").dimension
     axis = Quantity((mu.value * (period / (2.0 * math.pi)) ** 2) ** (1.0 / 3.0), length)
@@ -102,14 +102,14 @@ def _orbit(period: float, eccentricity: float = 0.0, inclination: float = 0.0, p
 
 
 def _places(orbit: Record, times: Array) -> Array:
-    """Positions at times from the perigee on, in axes along the perigee and ahead of it, shape (3, times)."""
+    """Return positions at times after the perigee, with the x axis towards the perigee, shape (3, times)."""
     e, axis, mu = orbit.part("eccentricity"), orbit.part("axis").value, constant("mu_earth").value
     speed = math.sqrt(mu / axis * (1.0 + e) / (1.0 - e))
     return propagate([[axis * (1.0 - e)], [0.0], [0.0]], [[0.0], [speed], [0.0]], mu, times)[0]
 
 
 def _fixed(orbit: Record) -> Array:
-    """Positions over a day in axes that turn with the Earth, shape (3, moments)."""
+    """Return positions over a day in axes that rotate with the Earth, shape (3, moments)."""
     tilt, perigee = np.radians([orbit.part("inclination"), orbit.part("perigee")])
     share = np.linspace(0.0, 1.0, _MOMENTS)
     x, y, _ = _places(orbit, share * constant("sidereal_day").value)
@@ -121,7 +121,7 @@ def _fixed(orbit: Record) -> Array:
 
 
 def _swing(vectors: Array) -> float:
-    """The largest angle from the first direction, in degrees."""
+    """Return the largest angle (degrees) between the first vector and any other vector."""
     directions = vectors / np.linalg.norm(vectors, axis=0)
     gaps = np.linalg.norm(directions - directions[:, :1], axis=0)
     return float(np.degrees(2.0 * np.arcsin(np.minimum(1.0, gaps / 2.0))).max())

@@ -1,4 +1,4 @@
-"""Equilibria of nonlinear systems, what textbooks prove of their stability, and motions that begin near them."""
+"""Equilibria of nonlinear systems with known stability, and motions that begin near them."""
 
 from __future__ import annotations
 
@@ -16,14 +16,17 @@ from satsym.formula import reading
 
 _SEED = 53
 _NEAR_BY = 0.02
-"""How far from an equilibrium motions begin."""
+"""Distance from an equilibrium at which motions begin."""
 _FAR_AWAY = 10.0
-"""What comes so far stays there: it is not followed any further."""
+"""Distance from an equilibrium at which a motion is stopped."""
 _FAST_RATE = 100.0
-"""What would move faster goes its way at this speed, so that what explodes takes a while."""
+"""Largest speed in the state space.
+
+A faster motion follows its trajectory at this speed, so that an explosion takes a measurable time.
+"""
 _UNTIL, _NODES = 400.0, 2001
 _WHILE = 60.0
-"""How long motions are followed, those of linear systems by themselves."""
+"""Duration for which motions of linear systems are followed."""
 _ATTRACTIVE, _STABLE, _UNSTABLE = "asymptotically stable", "stable", "unstable"
 
 CATALOGUE: Mapping[str, tuple[tuple[str, str], tuple[int, int], str]] = {
@@ -42,15 +45,15 @@ CATALOGUE: Mapping[str, tuple[tuple[str, str], tuple[int, int], str]] = {
          "(1 - sqrt(x1**2 + x2**2))*x2 + 10*(1 - x1/sqrt(x1**2 + x2**2))*x1"), (1, 0), _UNSTABLE,
     ),
 }  # fmt: skip
-"""Rates of x1 and x2, the equilibrium, and what is known of it; by energy or distance as a function of Liapunov's.
+"""Name -> rates of x1 and x2, equilibrium, and stability as known from energy or a distance as Lyapunov function.
 
-On the circle (r' = r (1 - r), angle' = 10 (1 - cos angle)) all motions end at the point that stands still, but those on
-one side of it go once round before.
+On the circle (r' = r (1 - r), angle' = 10 (1 - cos angle)) all motions tend to the equilibrium, but those that begin on
+one side of it first go once round the circle.
 """
 
 
 def equilibria() -> Family:
-    """Equilibria of nonlinear systems in the plane: textbook ones, and at random with linear parts that decide."""
+    """Return a family of planar equilibria: textbook examples, and random ones with hyperbolic linearisation."""
     rng = np.random.default_rng(_SEED)
     members = [_member(name, *entry) for name, entry in CATALOGUE.items()]
     for k in range(6):
@@ -65,10 +68,10 @@ def equilibria() -> Family:
 
 @kept
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
-    """The motion of a member of a family from a state, or from near its equilibrium.
+    """Return the motion of a member of a family from a state, or from a point near its equilibrium.
 
-    Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
-    What goes far away is not followed beyond.
+    Its parts are ``t``, ``x1``, ``x2``, ..., the distance ``size`` from the equilibrium, and the distance ``gone`` from
+    the initial state. A motion that goes far away is stopped there.
     """
     whole = linear.system(of)
     n = linear.dimension(whole)

@@ -1,6 +1,6 @@
-"""Families over which claims quantify: textbook systems of every kind, and members at random.
+"""Families of systems over which claims quantify: textbook systems of every kind, and random members.
 
-No member is chosen for a claim, and none is told what is claimed of it.
+No member is chosen with regard to a claim, and no member contains what is claimed of it.
 """
 
 from __future__ import annotations
@@ -31,11 +31,14 @@ BLOCKS: Mapping[str, list[list[str]]] = {
     "positive": [["1/4"]],
     "complex, positive": [["1/4", "1"], ["-1", "1/4"]],
 }
-"""Blocks with every kind of eigenvalue: real and complex, simple and multiple, with all eigenvectors and with fewer."""
+"""Matrices with all kinds of eigenvalues: real or complex, simple or multiple, with all eigenvectors or fewer."""
 
 
 def linear() -> Family:
-    """Systems x' = A x: every block by itself, and pairs of them, mixed by a change of basis; exact matrices."""
+    """Return a family of systems x' = A x: single blocks, and pairs of blocks after a change of basis.
+
+    Exact matrices.
+    """
     rng = np.random.default_rng(_SEED)
     names = list(BLOCKS)
     pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :] if len(BLOCKS[a]) + len(BLOCKS[b]) <= 4]
@@ -49,7 +52,10 @@ def linear() -> Family:
 
 
 def controlled() -> Family:
-    """Systems x' = A x + B u, y = C x with two or four states; in half of them inputs miss a part, outputs another."""
+    """Return a family of systems x' = A x + B u, y = C x with two or four states.
+
+    A quarter of the members is not controllable, and another quarter is not observable.
+    """
     rng = np.random.default_rng(_SEED)
     members = []
     for k in range(24):
@@ -71,7 +77,7 @@ def controlled() -> Family:
 
 
 def symmetric() -> Family:
-    """Symmetric matrices of every kind: with positive, with negative eigenvalues, with both, and with zero."""
+    """Return a family of symmetric matrices: definite, semidefinite, indefinite and zero."""
     rng = np.random.default_rng(_SEED)
     members = []
     for signs in ([1, 1], [1, 0], [1, -1], [0, 0], [-1, -1], [1], [-1], [1, 1, 1], [1, 1, 0], [1, 1, -1], [-1, -1, 0]):
@@ -83,14 +89,14 @@ def symmetric() -> Family:
 
 
 def _exact(rows: list[list[str]]) -> Any:
-    """A matrix of exact numbers."""
+    """Return a matrix of exact numbers."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.exact_matrix(rows)
 
 
 def _basis(rng: np.random.Generator, n: int) -> Any:
-    """A change of basis with whole entries, as its inverse has: shears, one after the other."""
+    """Return an integer matrix with integer inverse, as a product of shears."""
     basis = np.eye(n, dtype=int)
     for _ in range(n):
         i, j = rng.choice(n, 2, replace=False)

@@ -1,4 +1,4 @@
-"""Exact formulas, rates of models among them: derivatives, values, integrals, solutions, motions that rates make."""
+"""Operations on exact formulas, such as the rates of a model: derivatives, values, integrals, solutions, motions."""
 
 from __future__ import annotations
 
@@ -19,55 +19,55 @@ _POINTS = 2000
 
 
 def diff(of: Any, by: Any, times: int = 1) -> Any:
-    """The derivative of a formula, or of each entry of a matrix, by a letter."""
+    """Return the derivative of a formula, or of each entry of a matrix, with respect to a letter."""
     return of.diff(_letter(of, by), times) if is_exact(of) else 0
 
 
 def subs(of: Any, **values: Any) -> Any:
-    """A formula with values for some of its letters, all put in at once."""
+    """Return a formula with values for some of its letters, all inserted at once."""
     places = {s: values[s.name] for s in of.free_symbols if s.name in values} if is_exact(of) else {}
     return of.xreplace({s: _exact(v) for s, v in places.items()}) if places else of
 
 
 def left(equation: str) -> list[str]:
-    """The letters on the left-hand side of an equation as it is printed; none where it has but one side."""
+    """Return the letters on the left-hand side of a printed equation; empty for an expression."""
     formula = reading.statement(equation)
     return sorted(symbols(formula.lhs)) if isinstance(formula, Equality) else []
 
 
 def solutions(of: Any, by: Any) -> list[Any]:
-    """For which real values of a letter a formula is zero."""
+    """Return the real values of a letter for which a formula is zero."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.solutions(of, _letter(of, by))
 
 
 def integral(of: Any, by: Any, start: Any, end: Any) -> Any:
-    """The integral of a formula over a letter, exactly."""
+    """Return the exact integral of a formula over a letter."""
     return of.integrate((_letter(of, by), _exact(start), _exact(end)))
 
 
 def blocks(rows: Any) -> Any:
-    """The matrix that is made up of rows of blocks."""
+    """Return the matrix that consists of rows of blocks."""
     lines = [row[0].hstack(*row) for row in rows]
     return lines[0].vstack(*lines)
 
 
 def rates(model: str) -> list[Any]:
-    """The rates of the states of a model, exact."""
+    """Return the exact time derivatives of the states of a model."""
     from satsym.symbolic.lookup import library
 
     return library.rates(model)
 
 
 def variables(model: str) -> list[str]:
-    """Names of the states and controls of a model."""
+    """Return the names of the states and controls of a model."""
     found = shelf.find(model)
     return [*record.variables(found, "state"), *record.variables(found, "control")]
 
 
 def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float], until: float) -> Record:
-    """The motion that exact rates of these states make from a start on: ``t`` and the states by name."""
+    """Return the motion that given exact time derivatives generate from an initial state: ``t``, and states by name."""
     from scipy.integrate import solve_ivp
 
     from satsym.symbolic.lookup import formulas

@@ -1,6 +1,6 @@
-"""Linear systems: matrices, eigenvalues and ranks exactly; how their motions behave, by the motions themselves.
+"""Linear systems: exact matrices, eigenvalues and ranks; controllability and observability from Gramians.
 
-Wherever a system is asked for, the name of a model, a member of a family or a square matrix will do.
+A system may be given as the name of a model, a member of a family, or a square matrix.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from satsym.status import BadInput
 from satsym.wording import refuse_unknown
 
 _INTERVAL = 2.0
-"""Over which inputs act, and outputs are seen, to tell whether they do all that they can."""
+"""Length of the time interval over which controllability and observability are tested."""
 _ZERO, _DEPENDENT = 1e-9, 1e-7
 
 
 def system(of: Any) -> Record:
-    """A linear model: its exact matrices A, B and C, and the names of its states, inputs and outputs.
+    """Return a linear system: exact matrices A, B and C, and names of states, inputs and outputs.
 
-    A member of a family is one as it stands, a matrix one without inputs.
+    A member of a family is returned unchanged; a matrix becomes a system without inputs.
     """
     if isinstance(of, str):
         return _of_model(of, shelf.path_of(of))
@@ -48,7 +48,7 @@ def _of_model(name: str, _: Path | None) -> Record:
 
 
 def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
-    """A system with some of its inputs alone, if they are named."""
+    """Return a system with only the given inputs, or unchanged if none are given."""
     whole = system(of)
     if not inputs:
         return whole
@@ -57,15 +57,15 @@ def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
 
 
 def dual(of: Any) -> Record:
-    """The system with A', C' and B' for A, B and C: inputs and outputs change places."""
+    """Return the dual system, with A', C' and B' in place of A, B and C."""
     whole = system(of)
     return Record(f"the dual of {whole.name}", {"A": whole.part("A").T, "B": whole.part("C").T, "C": whole.part("B").T})
 
 
 def eigenvalues(of: Any) -> list[Any]:
-    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact if the matrix is.
+    """Return all eigenvalues, repeated by algebraic multiplicity; exact if the matrix is exact.
 
-    Those of a matrix with plain numbers are sorted by their real parts, and then downwards by their imaginary parts.
+    Eigenvalues of a numerical matrix are sorted by increasing real part, then by decreasing imaginary part.
     """
     a = system(of).part("A")
     if is_exact(a):
@@ -74,14 +74,14 @@ def eigenvalues(of: Any) -> list[Any]:
 
 
 def closed_loop(of: Any, gain: Any, inputs: Sequence[str] = ()) -> Record:
-    """x' = (A - B K) x, of some inputs alone; letters of A are taken as 1."""
+    """Return the closed loop x' = (A - B K) x with only the given inputs; letters in A are set to 1."""
     whole = system(of)
     a = numbers(whole.part("A")) - numbers(inputs_of(whole, inputs).part("B")) @ numbers(gain)
     return Record(f"{whole.name} with feedback", {**whole.parts, "A": a})
 
 
 def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
-    """Whether some feedback makes all real parts negative: by Hautus' test at each eigenvalue that is not so."""
+    """Return whether some feedback stabilises the system, by the Hautus test at each eigenvalue that is not stable."""
     whole = inputs_of(of, inputs)
     a, b = numbers(whole.part("A")), numbers(whole.part("B"))
     left = [np.hstack([v * np.eye(len(a)) - a, b]) for v in np.linalg.eigvals(a) if v.real > -_ZERO]
@@ -89,18 +89,18 @@ def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
 
 
 def algebraic(eigenvalue: Any, of: Any) -> int:
-    """How often an eigenvalue is a root of the characteristic polynomial."""
+    """Return the algebraic multiplicity of an eigenvalue."""
     return int(_eigenvalue(eigenvalue, of).algebraic)
 
 
 def geometric(eigenvalue: Any, of: Any) -> int:
-    """How many independent eigenvectors an eigenvalue has."""
+    """Return the geometric multiplicity of an eigenvalue."""
     return int(_eigenvalue(eigenvalue, of).geometric)
 
 
 @kept
 def eigenvectors(of: Any) -> list[Record]:
-    """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
+    """Return independent exact eigenvectors as columns (``vector``), each with its eigenvalue (``value``)."""
     a = system(of).part("A")
     return [
         Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
@@ -110,7 +110,7 @@ def eigenvectors(of: Any) -> list[Record]:
 
 
 def jordan(of: Any) -> Record:
-    """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
+    """Return a basis P of Jordan chains of an exact matrix, as columns, and the eigenvalue of each column."""
     from satsym.symbolic.analysis.components import jordan_form
 
     found = jordan_form(_spectrum(system(of).part("A")))
@@ -120,9 +120,9 @@ def jordan(of: Any) -> Record:
 
 
 def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
-    """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
+    """Return the rows of the Routh array, padded with zeros, up to the first row that begins with zero.
 
-    Coefficients are those of a polynomial, the highest power first, or a matrix of one row.
+    The coefficients are those of a polynomial, the highest power first, or a matrix of one row.
     """
     given = list(coefficients)
     width = (len(given) + 1) // 2
@@ -136,29 +136,29 @@ def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
 
 
 def characteristic(of: Any) -> list[Any]:
-    """Coefficients of det(s I - A), the highest power first."""
+    """Return the coefficients of det(s I - A), the highest power first."""
     a = system(of).part("A")
     return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
 
 
 def rank(of: Any) -> int:
-    """Rank of a matrix, exact where its entries are."""
+    """Return the rank of a matrix, exact if the entries are exact."""
     return int(of.rank()) if is_exact(of) else int(np.linalg.matrix_rank(np.asarray(of, dtype=float)))
 
 
 def dimension(of: Any) -> int:
-    """How many states a system has, or rows a matrix."""
+    """Return the number of states of a system, or of rows of a matrix."""
     return int(system(of).part("A").shape[0])
 
 
 def controllability(of: Any, inputs: Sequence[str] = ()) -> Any:
-    """The matrix [B, AB, ..., A^(n-1) B], of some inputs alone."""
+    """Return the controllability matrix [B, AB, ..., A^(n-1) B] for the given inputs."""
     whole = inputs_of(of, inputs)
     return _krylov(whole.part("A"), whole.part("B"))
 
 
 def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
-    """The matrix [C; CA; ...; C A^(n-1)], of some outputs alone."""
+    """Return the observability matrix [C; CA; ...; C A^(n-1)] for the given outputs."""
     whole = system(of)
     rows = whole.part("C")
     if outputs:
@@ -167,17 +167,17 @@ def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
 
 
 def controllable(of: Any, inputs: Sequence[str] = ()) -> bool:
-    """Whether some input carries every state to every other: by the Gramian, not by a rank."""
+    """Return whether a system is controllable, judged by its Gramian, not by a rank."""
     return _definite(gramian(inputs_of(of, inputs), _INTERVAL))
 
 
 def observable(of: Any) -> bool:
-    """Whether the output over an interval tells the state it began at: by the Gramian, not by a rank."""
+    """Return whether a system is observable, judged by the Gramian of the dual system, not by a rank."""
     return controllable(dual(of))
 
 
 def gramian(of: Any, t: float) -> Array:
-    """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
+    """Return the integral of e^(-As) B B' e^(-A's) over [0, t], from one exponential of twice the size (Van Loan)."""
     whole = system(of)
     a, b = -numbers(whole.part("A")), numbers(whole.part("B"))
     n = len(a)
@@ -186,7 +186,7 @@ def gramian(of: Any, t: float) -> Array:
 
 
 def flow(of: Any, t: float) -> Array:
-    """e^(At), by scaling and squaring; letters of A are taken as 1."""
+    """Return e^(At), computed by scaling and squaring; letters in A are set to 1."""
     from scipy.linalg import expm
 
     return np.asarray(expm(t * numbers(system(of).part("A"))))
@@ -194,7 +194,7 @@ def flow(of: Any, t: float) -> Array:
 
 @cache
 def _spectrum(a: Any) -> Any:
-    """The exact eigenvalues of a matrix, with their multiplicities."""
+    """Return the exact eigenvalues of a matrix with their multiplicities."""
     from satsym.symbolic.analysis import spectrum
 
     return spectrum(a)

@@ -1,4 +1,4 @@
-"""Motions of linear systems, followed by integration or by e^(At); what inputs bring about, and what they cannot."""
+"""Motions of linear systems, by integration or by e^(At), and the effect of inputs on them."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from satsym.auditing.propositions.values import Record, numbers
 _LATE, _GROWN = 80.0, 1.5
 _ENDLESS = 1e100
 _SLOWEST = 1e-6
-"""Share of the largest eigenvalue below which others are taken for zero, which rounding may leave of it."""
+"""Fraction of the largest eigenvalue below which other eigenvalues are attributed to rounding and taken as zero."""
 _MOMENTS = 400
 STEPS = 4000
 _LOST, _DEAD = 1e-9, 1e-3
 
 
 def motion(of: Any, start: Any, t: float) -> Array:
-    """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
+    """Return the state of x' = A x at time t from an initial state, by integration of all unit vectors at once."""
     return np.asarray(_transition(numbers(linear.system(of).part("A")), t) @ numeric(start))
 
 
 def trajectory(of: Any, start: Any, until: float) -> Record:
-    """The motion of x' = A x from a start on, by e^(At): ``t``, states by name, all ``curves``, and their ``size``."""
+    """Return the motion of x' = A x from an initial state, by e^(At): ``t``, states by name, ``curves``, ``size``."""
     system = linear.system(of)
     advance, path = linear.flow(system, until / STEPS), [np.asarray(numeric(start), dtype=float).ravel()]
     for _ in range(STEPS):
@@ -41,7 +41,7 @@ def trajectory(of: Any, start: Any, until: float) -> Record:
 
 
 def flow_rate(of: Any, t: float) -> Array:
-    """The derivative of e^(At) by t: by Cauchy's integral around t."""
+    """Return the derivative of e^(At) with respect to t, computed from Cauchy's integral around t."""
     from scipy.linalg import expm
 
     a, points = numbers(linear.system(of).part("A")), np.exp(2j * math.pi * np.arange(16) / 16)
@@ -49,7 +49,7 @@ def flow_rate(of: Any, t: float) -> Array:
 
 
 def limit(values: Sequence[Any]) -> Any:
-    """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
+    """Return the limit of a sequence whose steps are halved from one entry to the next, by Richardson extrapolation."""
     column = [np.asarray(numeric(entry), dtype=float) for entry in values]
     for power in range(1, len(values)):
         column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in pairwise(column)]
@@ -57,13 +57,16 @@ def limit(values: Sequence[Any]) -> Any:
 
 
 def farthest(of: Any, size: float) -> float:
-    """How far motions get that start no farther from zero than this; infinite where that has no bound."""
+    """Return the largest norm reached by motions that start within `size` of zero.
+
+    Infinite if motions are unbounded.
+    """
     largest, bounded = _reach(numbers(linear.system(of).part("A")))
     return size * largest if bounded else math.inf
 
 
 def remaining(of: Any, size: float) -> float:
-    """How far motions that start so far from zero are in the end; infinite where that has no bound."""
+    """Return the norm for t -> infinity of motions that start at distance `size` from zero; infinite if unbounded."""
     a = numbers(linear.system(of).part("A"))
     if not _reach(a)[1]:
         return math.inf
@@ -72,49 +75,49 @@ def remaining(of: Any, size: float) -> float:
 
 
 def stable(of: Any) -> bool:
-    """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
+    """Return whether x' = A x is stable, judged by e^(At) at increasing times."""
     return farthest(of, 1.0) < math.inf
 
 
 def asymptotically_stable(of: Any) -> bool:
-    """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
+    """Return whether x' = A x is asymptotically stable, judged by e^(At) at increasing times."""
     return remaining(of, 1.0) < _DEAD
 
 
 def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
-    """Places and weights that integrate a smooth function over an interval, by Gauss and Legendre."""
+    """Return nodes and weights of Gauss-Legendre quadrature on an interval."""
     places, weights = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (end - start)
     return [[float(start + half * (p + 1.0)), float(half * w)] for p, w in zip(places, weights, strict=True)]
 
 
 def wave(of: Any, t: float) -> Array:
-    """An input that is not special in any way, at a time."""
+    """Return an arbitrary input at time t, which has no special structure."""
     return np.array([math.cos(3.0 * t + k) + k * t for k in range(linear.system(of).part("B").shape[1])])
 
 
 def driven(of: Any, t: float) -> Array:
-    """The state at a time, from zero under the ``wave``: by integration."""
+    """Return the state at time t under the input ``wave``, from the zero state, by integration."""
     system = linear.system(of)
     a, b = numbers(system.part("A")), numbers(system.part("B"))
     return _followed(lambda s, x: np.asarray(a @ x + b @ wave(system, s)), np.zeros(len(a)), t)
 
 
 def least_energy(of: Any, start: Any, t: float) -> float:
-    """The least integral of the inputs squared that brings a state to zero within a time, however large they are."""
+    """Return the minimum energy (integral of the squared inputs) that brings a state to zero at time t."""
     x = numeric(start)
     return float(x @ np.linalg.solve(linear.gramian(of, t), x))
 
 
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
-    """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
+    """Return the state at time 1 under the input of least energy that comes as close to a target as possible."""
     a, b = (numbers(linear.system(of).part(name)) for name in "AB")
     moved, pushed, effort = _steering(a, b)
     return np.asarray(moved @ numeric(start) + pushed @ (effort @ (numeric(aim) - moved @ numeric(start))))
 
 
 def placing_gain(of: Any, coefficients: Sequence[float]) -> Any:
-    """K such that det(s I - A - B K) has these coefficients, of a system with one input: by Ackermann's formula."""
+    """Return K such that det(s I - A - B K) has the given coefficients, for a single input, by Ackermann's formula."""
     system = linear.system(of)
     a, b = system.part("A"), system.part("B")
     wanted = sum((a ** (a.rows - k) * c for k, c in enumerate(coefficients)), a * 0)
@@ -123,7 +126,7 @@ def placing_gain(of: Any, coefficients: Sequence[float]) -> Any:
 
 
 def stabilising_gain(of: Any) -> Array:
-    """K such that A + B K moves all that inputs move to the left: by Bass' equation."""
+    """Return K such that A + B K stabilises the controllable part of the system, by the equation of Bass."""
     from scipy.linalg import solve_continuous_lyapunov
 
     system = linear.system(of)
@@ -143,7 +146,10 @@ def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> A
 
 @kept
 def _steering(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """After 1: what a start becomes, what the inputs B' e^(-A's) d bring about, and which d a distance asks for."""
+    """Return the transition matrix to time 1, the matrix M, and its pseudo-inverse.
+
+    The inputs B' e^(-A's) d displace the state at time 1 by M d.
+    """
     n = len(a)
 
     def rates(s: float, x: Array) -> Array:
@@ -160,7 +166,7 @@ def _transition(a: Array, t: float) -> Array:
 
 
 def _late(a: Array) -> float:
-    """A time after which the slowest motion shows what becomes of it."""
+    """Return a time after which the slowest mode has shown whether it grows or decays."""
     found = np.linalg.eigvals(a)
     rates = np.abs([found, found.real])
     telling = rates[rates > _SLOWEST * np.abs(found).max(initial=0.0)]
@@ -169,7 +175,7 @@ def _late(a: Array) -> float:
 
 @kept
 def _reach(a: Array) -> tuple[float, bool]:
-    """The largest norm of e^(At) that is seen, and whether it has a bound."""
+    """Return the largest norm of e^(At) that was found, and whether e^(At) is bounded."""
     moved, sizes = np.eye(len(a)), []
     with np.errstate(over="ignore", invalid="ignore"):
         step = linear.flow(a, _late(a) / _MOMENTS)

@@ -1,4 +1,4 @@
-"""Matrices: exact where their entries are, else with numbers; a vector is a column, or a list of numbers."""
+"""Operations on matrices, exact for exact entries, otherwise numerical; a vector is a column or a list of numbers."""
 
 from __future__ import annotations
 
@@ -15,50 +15,50 @@ _SEED = 3
 
 
 def det(of: Any) -> Any:
-    """The determinant, exact where the matrix has letters."""
+    """Return the determinant, exact if the matrix contains letters."""
     return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(numeric(of))
 
 
 def inverse(of: Any) -> Any:
-    """The inverse, exact where the matrix has letters."""
+    """Return the inverse, exact if the matrix contains letters."""
     return of.inv() if is_exact(of) and of.free_symbols else np.linalg.inv(numeric(of))
 
 
 def transpose(of: Any) -> Any:
-    """The transpose."""
+    """Return the transpose."""
     return of.T
 
 
 def eye(size: int) -> Any:
-    """The identity."""
+    """Return the identity matrix."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.exact_matrix([[str(int(i == j)) for j in range(size)] for i in range(size)])
 
 
 def shape(of: Any) -> list[int]:
-    """Numbers of rows and columns."""
+    """Return the numbers of rows and columns."""
     return [int(size) for size in of.shape]
 
 
 def entries(of: Any) -> list[Any]:
-    """All entries, row by row."""
+    """Return all entries, row by row."""
     return list(of) if is_exact(of) else np.asarray(of).ravel().tolist()
 
 
 def rows(of: Any, places: Sequence[int]) -> Any:
-    """Some rows of a matrix, counted from one."""
+    """Return some rows of a matrix; the first row is number one."""
     chosen = [place - 1 for place in places]
     return of.extract(chosen, list(range(of.cols))) if is_exact(of) else np.asarray(of)[chosen]
 
 
 def hstack(parts: Sequence[Any]) -> Any:
-    """Matrices beside each other."""
+    """Return matrices stacked horizontally."""
     return parts[0].hstack(*parts) if all(map(is_exact, parts)) else np.column_stack([numeric(part) for part in parts])
 
 
 def diagonal(parts: Sequence[Any]) -> Any:
-    """Numbers, or square matrices, along the diagonal of a matrix that is zero elsewhere."""
+    """Return the block-diagonal matrix of numbers or square matrices."""
     from satsym.symbolic.lookup import formulas
 
     size = len(parts)
@@ -71,7 +71,7 @@ def diagonal(parts: Sequence[Any]) -> Any:
 
 
 def kernel(of: Any) -> list[Any]:
-    """Columns that span what a matrix maps to zero, exact where it has letters."""
+    """Return a basis of the null space of a matrix as columns, exact if the matrix contains letters."""
     if is_exact(of) and of.free_symbols:
         return list(of.nullspace(simplify=True))
     from scipy.linalg import null_space
@@ -80,26 +80,27 @@ def kernel(of: Any) -> list[Any]:
 
 
 def exp(x: Any) -> Any:
-    """The exponential of a number, or of each point of a curve; exact of an exact number."""
+    """Return the exponential of a number or of each point of a curve; exact for an exact number."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.function("exp", [x]) if is_exact(x) else np.exp(x)
 
 
 def factorial(n: int) -> int:
-    """1 times 2 times ... times n."""
+    """Return the factorial of n."""
     return math.factorial(n)
 
 
 def naturals(count: int) -> list[int]:
-    """0, 1, 2, ...: so many."""
+    """Return the list 0, 1, 2, ... with `count` entries."""
     return list(range(count))
 
 
 def vectors(of: Any) -> list[Array]:
-    """Vectors to try with a square matrix, or of a size: zero, units, random ones, and the matrix's own directions.
+    """Return test vectors for a square matrix or a dimension: zero, unit, random vectors and special directions.
 
-    These are what it maps to zero, and if it is symmetric its eigenvectors.
+    The special directions are the eigenvectors of a symmetric matrix, and a basis of the null space of any other
+    matrix.
     """
     size = of if isinstance(of, int) else int(of.shape[0])
     rng = np.random.default_rng(_SEED)
@@ -111,5 +112,5 @@ def vectors(of: Any) -> list[Array]:
 
 
 def numeric(of: Any) -> Array:
-    """A matrix, a column or a number with plain numbers."""
+    """Return a matrix, column or number as an array of numbers."""
     return np.asarray(measured(of) if is_exact(of) else of)

@@ -1,7 +1,8 @@
-"""Numerical integration: a method is the lines of one step, and its order is measured by steps along a known motion.
+"""Numerical integration methods, given as the lines of one step; their order is measured along a known motion.
 
-Lines are assignments. A name that ends in the mark of a node is a value there: ``x_n`` (or ``x_i``, ``x_j``) at the
-node, ``x_n1`` at the next, ``x_n0`` at the one before, ``x_nh`` and ``x_n0h`` half way to these; ``h`` is the step.
+Lines are assignments. The ending of a name says at which node the value is taken: ``x_n`` (or ``x_i``, ``x_j``) at the
+current node, ``x_n1`` at the next one, ``x_n0`` at the previous one, ``x_nh`` and ``x_n0h`` half way to these. ``h`` is
+the step.
 """
 
 from __future__ import annotations
@@ -26,32 +27,32 @@ _OFFSETS = {"": 0.0, "1": 1.0, "0": -1.0, "h": 0.5, "0h": -0.5}
 _NODES = np.linspace(0.25, 1.0, 7)
 _STEPS = (1 / 16, 1 / 32)
 _SLACK = 0.3
-"""How far a measured order may be from a whole number."""
+"""Largest distance of a measured order from an integer; otherwise the order is undecided."""
 _SPAN = (0.0, 1.25)
 _SEED = 3
 
 
 def rk4() -> list[str]:
-    """The classical method of order four for y' = f(x, y)."""
+    """Return the classical Runge-Kutta method of order four for y' = f(x, y)."""
     weighted = " + ".join(f"{b}*k{s}" for s, b in enumerate(classical_weights(), start=1))
     stages = [f"k{s} = f(x_n + h*{c}, y_n + h*{c}*k{max(s - 1, 1)})" for s, c in ((2, 0.5), (3, 0.5), (4, 1))]
     return ["k1 = f(x_n, y_n)", *stages, f"y_n1 = y_n + h*({weighted})"]
 
 
 def heun() -> list[str]:
-    """Heun's method for y' = f(x, y)."""
+    """Return Heun's method for y' = f(x, y)."""
     return ["k1 = f(x_n, y_n)", "k2 = f(x_n + h, y_n + h*k1)", "y_n1 = y_n + h/2*(k1 + k2)"]
 
 
 def euler() -> list[str]:
-    """Euler's method for y' = f(x, y)."""
+    """Return Euler's method for y' = f(x, y)."""
     return ["y_n1 = y_n + h*f(x_n, y_n)"]
 
 
 def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bool = False) -> list[str]:
-    """The classical method for several unknowns, in stages ``k1_x = h*f1(...)``; with what else the rates depend on.
+    """Return the classical Runge-Kutta method for several unknowns, in stages ``k1_x = h*f1(...)``.
 
-    ``previous`` goes from a node to the one before it.
+    `others` are further arguments of the time derivatives; `previous` integrates backwards to the previous node.
     """
     sign, there = ("-", "0") if previous else ("+", "1")
     lines = []
@@ -67,7 +68,7 @@ def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bo
 
 
 def with_line(lines: Sequence[str], line: str) -> list[str]:
-    """A method in which one line stands in the place of that which gives the same name its value."""
+    """Return a method in which one line replaces the line that assigns a value to the same name."""
     name = line.partition("=")[0].strip()
     if name not in (other.partition("=")[0].strip() for other in lines):
         raise BadInput(f"no line of the method assigns a value to {name}")
@@ -82,10 +83,10 @@ def moving(
     costates: Sequence[str] = (),
     coupled: bool = False,
 ) -> Record:
-    """A motion of a model under controls that vary, by the names that are given to its states, controls and costates.
+    """Return a motion of a model under varying controls, with the given names of states, controls and costates.
 
-    ``f1``, ``f2``, ... are the rates of the states, or of the costates where these are named, for lines of a method;
-    ``coupled`` adds to each a term with all these states, or costates, so that no argument is without effect.
+    ``f1``, ``f2``, ... are the time derivatives of the states, or of the costates if these are named, for use in lines
+    of a method. `coupled` adds to each a term in all these states or costates, so that every argument has an effect.
     """
     from scipy.integrate import solve_ivp
 
@@ -129,9 +130,9 @@ def moving(
 
 
 def order(lines: Sequence[str], along: Record | None = None) -> int:
-    """The order of a method, by the errors that steps of it make along a known motion; without one, of y' = cos(x) y.
+    """Return the order of a method, from the errors of single steps along a known motion, by default of y' = cos(x) y.
 
-    The error of a step of order p falls like the power p + 1 of the step.
+    The error of a step of order p is proportional to the power p + 1 of the step.
     """
     known = along or _growth()
     errors = [_error(lines, known, step) for step in _STEPS]
@@ -144,7 +145,7 @@ def order(lines: Sequence[str], along: Record | None = None) -> int:
 
 
 def error(lines: Sequence[str], steps: int) -> float:
-    """The error that so many steps of a method leave on the way from x = 0 to x = 1, for y' = cos(x) y."""
+    """Return the error of a method for y' = cos(x) y after a number of steps from x = 0 to x = 1."""
     known, h = _growth(), 1.0 / steps
     curves = known.part("curves")
     y = curves["y"](np.array(0.0))
@@ -155,7 +156,7 @@ def error(lines: Sequence[str], steps: int) -> float:
 
 
 def _error(lines: Sequence[str], along: Record, h: float) -> float:
-    """The largest error of one step, from several nodes at once."""
+    """Return the largest error of one step, taken from several nodes at once."""
     program, curves = programs.read(lines), along.part("curves")
     given = [name for statement in program.statements for name in programs.given_names(statement)]
     used = {name for statement in program.statements for name in programs.names_in(statement)}
@@ -178,15 +179,15 @@ def _error(lines: Sequence[str], along: Record, h: float) -> float:
 
 @cache
 def _growth() -> Record:
-    """y' = cos(x) y."""
+    """Return the known motion of y' = cos(x) y."""
     curves = {"x": lambda t: t, "y": lambda t: np.exp(np.sin(t))}
     return Record("y' = cos(x) y", {"curves": curves, "f": lambda x, y: np.cos(x) * y})
 
 
 def _components(rate: Callable[..., Array], sizes: Sequence[int]) -> Mapping[str, Callable[..., Array]]:
-    """The components of ``rate`` as functions named ``f1``, ``f2``, ..., which take numbers or arrays along a curve.
+    """Return the components of ``rate`` as functions ``f1``, ``f2``, ... of numbers or of arrays along a curve.
 
-    ``sizes`` are the numbers of components of the arguments of ``rate``.
+    `sizes` are the numbers of components of the arguments of ``rate``.
     """
 
     def component(k: int) -> Callable[..., Array]:

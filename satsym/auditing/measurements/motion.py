@@ -1,4 +1,4 @@
-"""Motions of shipped instances: where they begin, the optimum, what sweeps come to, what a constant control does."""
+"""Motions of shipped instances: initial states, optima, limits of sweeps, and motions under constant controls."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ _SWEEPS = 60
 _SETTLED_CONTROL = 1e-10
 
 loaded = cache(instances.load)
-"""A shipped instance, read once."""
+"""Return a shipped instance, which is read only once."""
 
 
 def start(instance: str) -> Record:
-    """The initial state of an instance."""
+    """Return the initial state of an instance."""
     case = loaded(instance)
     return _state(case, case.initial, f"the start of {instance}")
 
 
 def end(instance: str) -> Record:
-    """The final state of the optimum of an instance."""
+    """Return the final state of the optimum of an instance."""
     return _state(loaded(instance), _solved(instance).x[:, -1], f"the end of {instance}")
 
 
 def reference(instance: str, t: float | None = None) -> Record:
-    """The state on the reference of an instance, at the final time or another."""
+    """Return the state on the reference motion of an instance at time t, by default at the final time."""
     case = loaded(instance)
     time = case.tf if t is None else t
     if time is None:
@@ -50,16 +50,16 @@ def reference(instance: str, t: float | None = None) -> Record:
 
 
 def parameter(instance: str, name: str) -> float:
-    """A parameter of an instance."""
+    """Return a parameter of an instance."""
     known = _parameters(loaded(instance))
     refuse_unknown(f"{instance} has no parameter", name, known)
     return known[name]
 
 
 def least_cost(instance: str, **parameters: float) -> Record:
-    """The optimum of an instance, or of one with other parameters.
+    """Return the optimum of an instance, with some parameters replaced if any are given.
 
-    Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls, costates.
+    Its parts are the cost J, terminal cost S, running cost V, times, final time, states, controls and costates.
     """
     parameters = {name: float(value) for name, value in parameters.items()}
     case, found = loaded(instance), _solved(instance, **parameters)
@@ -77,12 +77,12 @@ def least_cost(instance: str, **parameters: float) -> Record:
 
 
 def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
-    """The motion of an instance under constant controls: ``t`` and the states by name, and its ``end``."""
+    """Return the motion of an instance under constant controls: ``t``, states by name, and final state ``end``."""
     return _steered(loaded(instance), controls)
 
 
 def displaced(instance: str, **by: float) -> Record:
-    """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
+    """Return the uncontrolled motion that starts on the reference of an instance with some states displaced."""
     case = loaded(instance)
     names = case.model.spec.state_names
     for other in by:
@@ -106,7 +106,7 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
 
 
 def free_deviation(model: str, instance: str) -> Record:
-    """The trajectory without control in a linear model, from the start of an instance taken for deviations."""
+    """Return the uncontrolled motion of a linear model whose initial deviation is the initial state of an instance."""
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
@@ -116,7 +116,7 @@ def free_deviation(model: str, instance: str) -> Record:
 
 
 def given_at_end(instance: str) -> list[str]:
-    """States and costates whose final values the boundary conditions give as numbers."""
+    """Return the states and costates whose final values are numbers according to the boundary conditions."""
     case = loaded(instance)
     names = case.model.spec.state_names
     if case.tf is None:
@@ -128,9 +128,10 @@ def given_at_end(instance: str) -> list[str]:
 
 
 def swept(instance: str, guess: float = 0.0) -> Record:
-    """Where forward-backward sweeps end that begin with constant controls and replace them by the law: J and controls.
+    """Return cost J and controls after forward-backward sweeps that start from constant controls and converged.
 
-    States go forwards and costates backwards by the classical method of order four.
+    Each sweep replaces the controls by the control law. States are integrated forwards and costates backwards by the
+    classical Runge-Kutta method of order four.
     """
     case = loaded(instance)
     if case.tf is None or case.final:
@@ -153,14 +154,14 @@ def swept(instance: str, guess: float = 0.0) -> Record:
 
 
 def difference(one: Record, other: Record) -> Record:
-    """What one state has more than another, state by state."""
+    """Return the difference of two states, component by component."""
     names = one.part("names")
     parts = {name: one.part(name) - other.part(name) for name in names}
     return Record(f"the difference of {one.name} and {other.name}", {**parts, "names": names})
 
 
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
-    """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
+    """Return the largest difference of two states, relative for values above 1; by default of all states but angles."""
     angles = one.parts.get("angles", ())
     names = states or [name for name in one.part("names") if name not in angles]
     return max(abs(one.part(n) - other.part(n)) / max(1.0, abs(other.part(n))) for n in names)
@@ -168,7 +169,7 @@ def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
 
 @cache
 def _solved(name: str, **parameters: float) -> Solution:
-    """The optimum of a shipped instance, with other parameters where some are given."""
+    """Return the optimum of a shipped instance, with some parameters replaced if any are given."""
     from satsym.solvers import solve
 
     case = loaded(name)
@@ -190,7 +191,7 @@ def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record
 
 
 def _law(case: Instance, times: Array, x: Array, lam: Array) -> Array:
-    """The controls that minimise the Hamiltonian, at each node."""
+    """Return the controls that minimise the Hamiltonian at each node."""
     limits: Any = case.control_set.arguments
     rows = [
         case.model.control_law(float(t), tuple(a), tuple(b), case.parameters, limits)

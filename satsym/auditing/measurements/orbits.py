@@ -1,6 +1,6 @@
-"""Motions about a centre: what their orbits are, where they come to, what neighbours do, what the equations give there.
+"""Motions in a central gravitational field: their orbits, positions, neighbouring motions and time derivatives.
 
-A motion is the name of an instance, or a record with its position, velocity and mu, such as a member of a family.
+A motion is given as the name of an instance, or as a record of position, velocity and mu, such as a member of a family.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _PLACES = 400
 
 
 def motions() -> Family:
-    """Motions about a centre: circle, ellipses, parabola and hyperbola through one place, others, and random ones."""
+    """Return a family of motions about a centre: circle, ellipses, parabola, hyperbolas, and random motions."""
     rng, across = np.random.default_rng(_SEED), (0.0, 1.0, 0.0)
     starts: dict[str, tuple[Sequence[float] | Array, Sequence[float] | Array, float]] = {
         "circle": ((1.0, 0.0, 0.0), across, 1.0),
@@ -45,10 +45,10 @@ def motions() -> Family:
 
 
 def orbit(of: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Record:
-    """The orbit of a motion, or of a position, a velocity and mu.
+    """Return the orbit of a motion, or of a position, velocity and mu.
 
-    Its parts are the conic, eccentricity, energy, angular momentum, and where there are such the period, the
-    semi-major axis, the distances of both apsides and the speed at infinity.
+    Its parts are the conic, eccentricity, energy and angular momentum, and as far as they exist the period, semi-major
+    axis, periapsis, apoapsis and speed at infinity.
     """
     found = elements(*_start(of, velocity, mu))
     parts = {name: getattr(found, name) for name in ("eccentricity", "energy", "angular_momentum", "periapsis")}
@@ -58,7 +58,7 @@ def orbit(of: Any, velocity: ArrayLike | None = None, mu: float | None = None) -
 
 
 def coasted(of: Any, t: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Array:
-    """Position and velocity after a time, or at many times as columns: in closed form."""
+    """Return position and velocity after a time, or at many times as columns, by the closed-form solution."""
     position, speed, pull = _start(of, velocity, mu)
     if np.ndim(t) == 0:
         return np.concatenate([np.ravel(p) for p in propagate(position, speed, pull, float(t))])
@@ -66,7 +66,7 @@ def coasted(of: Any, t: Any, velocity: ArrayLike | None = None, mu: float | None
 
 
 def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | None = None) -> float:
-    """The angle by which the position has turned after a time."""
+    """Return the angle by which the position turns within a time."""
     start = _start(of, velocity, mu)
     places = coasted(start[0], np.linspace(0.0, t, _PLACES), start[1], start[2])[:3]
     one, next_ = places[:, :-1], places[:, 1:]
@@ -75,7 +75,7 @@ def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | Non
 
 
 def rates_at(of: Any, x: ArrayLike, controls: Sequence[float] = (), **parameters: float) -> Array:
-    """The rates of a model, by default without control, or of a member of a family, in some state."""
+    """Return the time derivatives of a model, by default without control, or of a member of a family, at a state."""
     if isinstance(of, Record):
         if "formulas" not in of.parts:
             return numbers(of.part("A")) @ np.asarray(x, dtype=float)
@@ -86,7 +86,7 @@ def rates_at(of: Any, x: ArrayLike, controls: Sequence[float] = (), **parameters
 
 
 def jacobian_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
-    """The derivatives of these rates by the states."""
+    """Return the Jacobian of the time derivatives with respect to the states, at a state."""
     if isinstance(of, Record):
         if "slopes" not in of.parts:
             return numbers(of.part("A"))
@@ -98,7 +98,7 @@ def jacobian_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
 
 
 def approaching(x: ArrayLike) -> list[Array]:
-    """Points nearer and nearer to a point, each half as far from it as the one before."""
+    """Return two points that approach a point, the second at half the distance of the first."""
     centre = np.asarray(x, dtype=float)
     way = np.random.default_rng(_SEED).normal(size=centre.shape)
     size = max(1.0, float(np.abs(centre).max())) / float(np.linalg.norm(way))

@@ -1,7 +1,8 @@
-"""What printed programs do, in Python, and in MATLAB and Maple put into Python's syntax: they are walked through.
+"""Behaviour of printed programs in Python, or in MATLAB and Maple transcribed to Python syntax.
 
-A program is a list of lines, as ``text['program', 'lines']`` gives it, or lists joined by ``+``. Values that are given
-by name take the place of those that the lines assign. A line that is put at the end is tried in the program's world.
+A program is a list of lines, as in ``text['program', 'lines']``, or several lists joined by ``+``. It is interpreted,
+not executed. Values that are given by name replace the values that the lines assign. A line appended to a program is
+evaluated with the variables of the program.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ _MAIN = ("x", "y", "z")
 
 
 def values(program: Sequence[str], **given: Any) -> Record:
-    """The variables of a program by name, once it has gone through."""
+    """Return the variables of a program by name after it has run."""
     found = _walked(program, given)
     return Record("the program", {name: _plain(value) for name, value in found.values.items()})
 
 
 def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> Any:
-    """What a function of a program returns."""
+    """Return what a function of a program returns."""
     found = _walked(program, given).values.get(name)
     if not callable(found):
         raise BadInput(
@@ -45,12 +46,12 @@ def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> 
 
 
 def output(program: Sequence[str], **given: Any) -> list[str]:
-    """The lines that a program prints."""
+    """Return the lines that a program prints."""
     return list(_walked(program, given).said)
 
 
 def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
-    """Each call of one of matplotlib's functions: its arguments x, y, ... in order, and those that have names."""
+    """Return the calls of one function of matplotlib: arguments x, y, ... in order, and keyword arguments."""
     return [
         Record(call, {"arguments": list(d.arguments), **dict(zip(_MAIN, d.arguments, strict=False)), **d.named})
         for d in _walked(program, given).drawn
@@ -59,7 +60,7 @@ def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
 
 
 def stops(program: Sequence[str]) -> list[str]:
-    """Why a program would stop before its end, as Python would; empty where it goes through."""
+    """Return why a program would stop with an error in Python; empty if it runs to its end."""
     with undecided_if_refused():
         try:
             _run(_read(program).text, ())
@@ -69,27 +70,27 @@ def stops(program: Sequence[str]) -> list[str]:
 
 
 def unassigned(program: Sequence[str]) -> list[str]:
-    """Names that have no value yet where a line uses them."""
+    """Return the names that have no value when a line uses them."""
     return list(dict.fromkeys(programs.loose_names(_read(program))))
 
 
 def assigned(program: Sequence[str]) -> list[str]:
-    """Names that the lines give a value, imports and functions among them."""
+    """Return the names to which the lines assign a value, including imports and functions."""
     return list(_assigned(_read(program)))
 
 
 def used(program: Sequence[str]) -> list[str]:
-    """Names that the lines use."""
+    """Return the names that the lines use."""
     return sorted({name for statement in _read(program).statements for name in programs.names_in(statement)})
 
 
 def sources(program: Sequence[str], name: str) -> list[str]:
-    """Names that a value is made from, directly or by others."""
+    """Return the names on which a value depends, directly or through other names."""
     return sorted(programs.sources(_read(program), [name]) - {name})
 
 
 def unit_in(label: str) -> float:
-    """How many base units the unit is that a label has in brackets."""
+    """Return the value in base units of the unit that a label contains in brackets."""
     found = _BRACKET.search(label)
     if found is None:
         raise BadInput(f"{shown(label)} has no unit in brackets")
@@ -121,7 +122,7 @@ def _run(text: str, given: tuple[tuple[str, tuple[int, ...], tuple[Any, ...]], .
 
 
 def _numeric(value: Any) -> Any:
-    """Exact numbers, and those in lists, as floats."""
+    """Return exact numbers as floats, also within lists."""
     if isinstance(value, list):
         return [_numeric(entry) for entry in value]
     return measured(value)[()] if is_exact(value) else value
@@ -134,12 +135,12 @@ def _plain(value: Any) -> Any:
 _LOOP = re.compile(r"while\((.*)\)")
 _COUNTED = re.compile(r"^for +\w+=\w+:\w+")
 _ENTRY = re.compile(r"\(([ij](?:\+1)?)\)")
-"""An index, which picks an entry where brackets else call a function."""
+"""Pattern of an index in MATLAB, which selects an entry, while other brackets call a function."""
 _SEED = 11
 
 
 def matlab(lines: str | Sequence[str], **given: Any) -> Record:
-    """The values that lines give to names; ``again`` tells whether a loop ``while(...)`` goes round once more."""
+    """Return the values that lines assign; ``again`` states whether a loop ``while(...)`` would be repeated."""
     world = {name: np.array(v, dtype=float) if isinstance(v, list) else v for name, v in given.items()}
     program = _program(lines)
     with undecided_if_refused():
@@ -148,7 +149,7 @@ def matlab(lines: str | Sequence[str], **given: Any) -> Record:
 
 
 def iterates() -> Family:
-    """Controls before and after an iteration, which changed by shares of their size between none and all of it."""
+    """Return a family of controls before and after an iteration, with relative changes between zero and one."""
     rng, members = np.random.default_rng(_SEED), []
     for share in (0.0, 0.001, 0.003, 0.009, 0.011, 0.03, 0.1, 0.5, 1.0):
         new = rng.uniform(0.1, 1.0, 20)
@@ -158,19 +159,19 @@ def iterates() -> Family:
 
 
 def count(text: str, sign: str) -> int:
-    """How often a sign stands in a text."""
+    """Return how often a sign occurs in a text."""
     return text.count(sign)
 
 
 def used_early(lines: str | Sequence[str]) -> list[str]:
-    """Names that some line gives a value, but that another line uses before."""
+    """Return the names that are used before a later line assigns their value."""
     program = _program(lines)
     given = {name for statement in program.statements for name in programs.given_names(statement)}
     return sorted(given & {*programs.loose_names(program)})
 
 
 def _program(lines: str | Sequence[str]) -> Program:
-    """Lines in Python's syntax; ``/`` becomes the quotient that MATLAB takes of arrays, ``./`` goes entry by entry."""
+    """Return lines in Python syntax; ``/`` becomes the matrix quotient of MATLAB, ``./`` the elementwise quotient."""
     found = []
     for line in [lines] if isinstance(lines, str) else lines:
         text = _COUNTED.sub("", line.strip()).replace(" ", "").rstrip(";")
@@ -183,7 +184,7 @@ def _program(lines: str | Sequence[str]) -> Program:
 
 
 class _Quotients(ast.NodeTransformer):
-    """Puts a function in the place of the quotient of two rows."""
+    """Replacement of the quotient of two rows by a function call."""
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
@@ -193,7 +194,7 @@ class _Quotients(ast.NodeTransformer):
 
 
 def _quotient(one: Any, other: Any) -> Any:
-    """The q for which q times the other row comes closest to the one; of numbers, what divides entry by entry."""
+    """Return q such that q times the other row is closest to the one row; for numbers, the ordinary quotient."""
     rows = np.ndim(one) and np.ndim(other)
     return np.array([np.dot(one, other) / np.dot(other, other)]) if rows else one / other
 

@@ -1,6 +1,6 @@
-"""Linear-quadratic regulators: gains by Riccati's equation, costs by Liapunov's equation, costates by e^(Ht).
+"""Linear-quadratic regulators: gains from the Riccati equation, costs from the Lyapunov equation, costates from e^(Ht).
 
-A system may bring its weights Q and R; where it does not, they are given.
+A system may contain its weights Q and R; otherwise they are arguments.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SEED = 19
 
 
 def regulators() -> Family:
-    """Systems that inputs can steer, with weights: the textbooks', and others at random, some of which are unstable."""
+    """Return a family of controllable systems with weights: textbook examples, and random (partly unstable) ones."""
     rng = np.random.default_rng(_SEED)
     given: dict[str, tuple[Any, Any, Any, Any]] = {
         "integrator": ([[0.0]], [[1.0]], [[1.0]], [[2.0]]),
@@ -41,20 +41,20 @@ def regulators() -> Family:
 
 
 def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> Record:
-    """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A."""
+    """Return the regulator of a system with the given inputs: gain K of u = -K x, P, and the closed-loop matrix A."""
     found = _parts(of, inputs, Q, R)
     P, K = _solved(*found)
     return Record("the regulator", {"K": K, "P": P, "A": found[0] - found[1] @ K})
 
 
 def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
-    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
+    """Return the result of MATLAB's lqr(A, B, Q, R) in its order [K, S, e] (Control System Toolbox, page of lqr)."""
     found = regulator(Record("the system", {"A": numbers(A), "B": numbers(B)}), Q=Q, R=R)
     return [found.part("K"), found.part("P"), linear.eigenvalues(found)]
 
 
 def cost(of: Any, gain: Any, start: Any) -> float:
-    """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: by Liapunov's equation."""
+    """Return the infinite-horizon integral of x'Qx + u'Ru along u = -K x, from the Lyapunov equation."""
     from scipy.linalg import solve_continuous_lyapunov
 
     (a, b, q, r), gains = _parts(of), np.atleast_2d(numeric(gain)).astype(float)
@@ -65,7 +65,7 @@ def cost(of: Any, gain: Any, start: Any) -> float:
 
 
 def other_gains(of: Any, inputs: Sequence[str] = ()) -> list[Array]:
-    """Gains near the regulator's and farther from it, all of which make the loop stable."""
+    """Return gains at several distances from the regulator's gain, all of which stabilise the closed loop."""
     found = _parts(of, inputs)
     K, rng, gains = regulator(of, inputs).part("K"), np.random.default_rng(_SEED), []
     for size in (0.01, 0.03, 0.1, 0.3):
@@ -77,13 +77,13 @@ def other_gains(of: Any, inputs: Sequence[str] = ()) -> list[Array]:
 
 
 def hamiltonian(of: Any, Q: Any = None) -> Array:
-    """[A, -B R^-1 B'; -Q, -A'], which moves states and costates of the optimum."""
+    """Return [A, -B R^-1 B'; -Q, -A'], the matrix of the linear equations of states and costates of the optimum."""
     a, b, q, r = _parts(of, (), Q)
     return np.block([[a, -b @ np.linalg.solve(r, b.T)], [-q, -a.T]])
 
 
 def riccati(of: Any, t: float) -> Array:
-    """P at a time before the end of a finite interval, at whose end it is 0: -P' = A'P + PA + Q - P B R^-1 B'P."""
+    """Return P(t) at time t before the end of a finite horizon, where P = 0: -P' = A'P + PA + Q - P B R^-1 B'P."""
     from scipy.integrate import solve_ivp
 
     a, b, q, r = _parts(of)
@@ -98,14 +98,14 @@ def riccati(of: Any, t: float) -> Array:
 
 
 def costate(of: Any, start: Any, t: float) -> Array:
-    """The costate at the start of the optimum over a finite interval, of the cost with 1/2; 0 at its end: by e^(Ht)."""
+    """Return the initial costate of the optimum over a finite horizon, with 1/2 in the cost and final costate 0."""
     whole = linear.flow(hamiltonian(of), t)
     n = len(whole) // 2
     return -np.linalg.solve(whole[n:, n:], whole[n:, :n] @ numeric(start))
 
 
 def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> tuple[Array, Array, Array, Array]:
-    """A, B, Q and R with numbers."""
+    """Return A, B, Q and R as arrays of numbers."""
     whole = linear.inputs_of(of, inputs)
     a, b = numbers(whole.part("A")), numbers(whole.part("B"))
     weights = [whole.parts.get(name) if stated is None else numeric(stated) for name, stated in (("Q", Q), ("R", R))]

@@ -1,9 +1,9 @@
 """Manoeuvres of a pitch axis with a reaction wheel: by the classical law, by switching, and with the least heat.
 
-An instance with a ``[classical]`` table gives the numbers. Motions are simulated with the generated equations; one has
-its times ``t``, ``angle``, ``rate``, wheel ``speed`` (the deviation from the nominal one), ``torque``, the ``impulse``
-spent by then, its ``duration``, and the ``heat``: the integral of the torque squared, as the motor's resistance makes
-it. What its back-EMF takes comes to nothing between two states of rest.
+An instance with a ``[classical]`` table provides the numbers, and motions are simulated with the generated equations. A
+motion has times ``t``, ``angle``, ``rate``, ``speed`` of the wheel (deviation from the nominal speed), ``torque``, the
+``impulse`` spent so far, its ``duration``, and ``heat``, the integral of the squared torque, which the resistance of
+the motor dissipates. The work against the back-EMF is zero between two states of rest.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from satsym.wording import refuse_unknown
 
 _TIGHT = 1e-11
 _LAGS = 5000.0
-"""How long the law with a real differentiator is followed at most, in its time constants."""
+"""Longest simulation of the law with a real differentiator, in time constants of the differentiator."""
 _NODES = 1001
 _PHASES = np.linspace(4.0, 200.0, 800)
-"""Frequencies of a panel times the duration of the manoeuvre."""
+"""Frequencies of a panel times the duration of the manoeuvre, at which its oscillation is computed."""
 
 
 def valued(formula: Any, instance: str, **more: float) -> float:
-    """The value of a formula with the numbers of an instance, and others by name."""
+    """Return the value of a formula for the numbers of an instance, and further numbers by name."""
     known = _numbers(instance) | more
     letters = {s.name: s for s in formula.free_symbols}
     for name in letters:
@@ -40,9 +40,10 @@ def valued(formula: Any, instance: str, **more: float) -> float:
 
 @cache
 def classical(instance: str, differentiator: float = 0.0) -> Record:
-    """The motion under the classical law after a step of the command.
+    """Return the motion under the classical law after a step of the command.
 
-    Its rate is that of an ideal differentiator, which answers the step with an impulse, or of one with a time constant.
+    The rate comes from an ideal differentiator, which responds to the step with an impulse, or from one with the given
+    time constant.
     """
     from satsym.analysis.classical import law
 
@@ -56,9 +57,9 @@ def classical(instance: str, differentiator: float = 0.0) -> Record:
 
 
 def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: float = 0.0) -> Record:
-    """A square wave of torque of one period: the motion of least time from rest to rest, with that torque or duration.
+    """Return the minimum-time motion from rest to rest, under one period of a square wave of torque.
 
-    It may begin with a share of the largest rate that it has from rest.
+    Either the torque or the duration is given. `share` is the initial rate as a fraction of the largest rate.
     """
     n = _numbers(instance)
     if bool(torque) == bool(duration):
@@ -69,7 +70,7 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
 
 
 def gentle(instance: str, duration: float) -> Record:
-    """The motion of least heat from rest to rest in some time, by the derived law."""
+    """Return the motion of least heat from rest to rest in a given time, by the derived law."""
     from satsym.symbolic.lookup import library
 
     n = _numbers(instance)
@@ -81,13 +82,13 @@ def gentle(instance: str, duration: float) -> Record:
 
 
 def settled(motion: Record, aim: float, band: float) -> float:
-    """When a motion's angle is within a share of its aim for good."""
+    """Return the time after which the angle of a motion stays within a relative band around its target."""
     off = np.flatnonzero(np.abs(motion.part("angle") / aim - 1.0) > band)
     return float(motion.part("t")[off[-1]]) if len(off) else 0.0
 
 
 def reached(motion: Record, aim: float) -> float:
-    """When a motion's angle comes to its aim for the first time, straight between the moments around it."""
+    """Return the first time at which the angle of a motion reaches its target, by linear interpolation."""
     t, gap = motion.part("t"), motion.part("angle") - aim
     crossed = np.flatnonzero(gap[1:] * gap[:-1] <= 0.0)
     if not len(crossed):
@@ -97,9 +98,9 @@ def reached(motion: Record, aim: float) -> float:
 
 
 def swinging(motion: Record) -> float:
-    """How far panels swing after a motion, at most over their frequencies, as an acceleration of the body.
+    """Return the largest amplitude of panels after a motion over all their frequencies, as an acceleration of the body.
 
-    An impulse with which the motion begins counts as a push, too.
+    An impulse at the beginning of the motion is included.
     """
     from scipy.optimize import minimize_scalar
 
@@ -122,9 +123,10 @@ def swinging(motion: Record) -> float:
 
 
 def crossing_time(shares: list[float], controls: list[float]) -> float:
-    """How long a body of inertia 1 takes over the distance 1 from rest to rest, under forces at shares of the time.
+    """Return the time in which a body of inertia 1 moves the distance 1 from rest to rest.
 
-    They are straight between; one that jumps is given twice at that share.
+    `controls` are the forces at the fractions `shares` of the time, linear between them; at a jump the fraction is
+    given twice.
     """
     fine = np.unique(np.concatenate([np.linspace(0.0, 1.0, 20001), shares]))
     middle = 0.5 * (fine[1:] + fine[:-1])
@@ -145,7 +147,7 @@ def _numbers(instance: str) -> dict[str, float]:
 
 
 def _pushed(instance: str, pieces: list[tuple[float, float, float]], rate: float = 0.0) -> Record:
-    """The motion under torques one after the other, each for its time straight from one to another; from some rate."""
+    """Return the motion under successive torques, each linear in time, from an initial rate."""
     from scipy.integrate import solve_ivp
 
     case = motion.loaded(instance)
@@ -167,7 +169,7 @@ def _pushed(instance: str, pieces: list[tuple[float, float, float]], rate: float
 
 
 def _recorded(instance: str, t: Array, x: Array, pushes: Array, spent: float = 0.0) -> Record:
-    """A motion by its curves; ``spent`` is the impulse with which it begins."""
+    """Return a motion as a record of its curves; `spent` is the impulse with which it begins."""
     means = 0.5 * (np.abs(pushes[1:]) + np.abs(pushes[:-1])) * np.diff(t)
     squares = (pushes[1:] ** 2 + pushes[1:] * pushes[:-1] + pushes[:-1] ** 2) / 3.0 * np.diff(t)
     return Record(

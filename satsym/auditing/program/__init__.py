@@ -1,1 +1,1 @@
-"""Printed programs: parsed, measured and followed, never executed."""
+"""Printed programs: they are parsed, measured and interpreted, but never executed by Python."""

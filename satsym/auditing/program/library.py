@@ -1,7 +1,7 @@
-"""What a printed program may import and call, and how large its values may become.
+"""Modules and functions that a printed program may use, and limits on the size of its values.
 
-A little of NumPy, SciPy and matplotlib is known; drawing is only noted down. Sizes are looked at before values are
-made.
+A small part of NumPy, SciPy and matplotlib is supported; drawing is only recorded. Sizes are checked before values are
+created.
 """
 
 from __future__ import annotations
@@ -22,23 +22,29 @@ from satsym.status import BadInput
 from satsym.wording import shown
 
 MAX_SIZE = 100_000
-"""Entries of an array or a list, characters of a text; the shipped programs have arrays of up to 3000."""
+"""Number of entries of an array or list, or characters of a text; the shipped programs have arrays of up to 3000."""
 
 
 def made(count: int) -> None:
-    """Count what is about to be made."""
+    """Count the entries of a value that is about to be created.
+
+    Raises
+    ------
+    OverBudget
+        If the value has too many entries.
+    """
     if count > MAX_SIZE:
         raise OverBudget(f"an array, a list or a text of more than {MAX_SIZE:,} entries")
     budget.charge(numbers=count)
 
 
 def broadcast(one: Any, other: Any) -> None:
-    """Count the entries of what two arrays, or an array and a number, are put together to."""
+    """Count the entries of the result of an operation between two arrays, or an array and a number."""
     made(math.prod(np.broadcast_shapes(np.shape(one), np.shape(other))))
 
 
 def indexed(owner: Any, place: Any) -> None:
-    """Count the entries that lists of indices pick from an array; a slice is a view and takes nothing."""
+    """Count the entries that lists of indices select from an array; slices are views and count nothing."""
     parts = place if isinstance(place, tuple) else (place,)
     picked = math.prod(max(1, extent(part)) for part in parts if isinstance(part, list | np.ndarray))
     if picked > 1:
@@ -46,13 +52,13 @@ def indexed(owner: Any, place: Any) -> None:
 
 
 def formatted(parts: Sequence[str]) -> str:
-    """Texts as one, unless that is too long."""
+    """Return texts joined to one text, after its length is counted."""
     made(sum(map(len, parts)))
     return "".join(parts)
 
 
 def numeric(value: Any) -> Any:
-    """Numbers, or lists of them, as an array."""
+    """Return numbers, or nested lists of numbers, as an array."""
     if not isinstance(value, np.ndarray):
         _refuse_others(value)
         made(extent(value))
@@ -60,7 +66,7 @@ def numeric(value: Any) -> Any:
 
 
 def extent(value: Any, known: dict[int, int] | None = None) -> int:
-    """Entries of a value, and of what is in it, each as often as it is there."""
+    """Return the number of entries of a value including nested values, each counted as often as it occurs."""
     if isinstance(value, np.ndarray):
         return int(value.size)
     if isinstance(value, str):
@@ -82,7 +88,8 @@ def _refuse_others(value: Any) -> None:
 
 
 MAX_STATES = 100
-"""States of an initial value problem: an implicit method solves linear equations of that size at every step."""
+"""Number of states of an initial value problem, as implicit methods solve linear equations of this size in each step.
+"""
 DRAWING = frozenset("figure plot scatter title xlabel ylabel legend grid axis show savefig".split())
 BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -103,7 +110,7 @@ _KEYWORDS = frozenset({"t_eval", "rtol", "atol", "method"})
 
 @dataclass(frozen=True)
 class Drawing:
-    """A call of matplotlib's: what was called, with which arguments."""
+    """A call of a function of matplotlib with its arguments."""
 
     name: str
     arguments: tuple[Any, ...]
@@ -112,7 +119,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Module:
-    """A module, or what ``solve_ivp`` returns: attributes by name."""
+    """A module, or the result of ``solve_ivp``: attributes by name."""
 
     name: str
     attributes: Mapping[str, Any]
@@ -120,7 +127,7 @@ class Module:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a program leaves behind: its variables, what it printed and drew."""
+    """Result of a program: its variables, printed lines and drawings."""
 
     values: dict[str, Any]
     said: list[str] = field(default_factory=list)
@@ -128,7 +135,7 @@ class Run:
 
 
 def modules(left: Run) -> Mapping[str, Module]:
-    """The modules that a program may import, by their full names."""
+    """Return the modules that a program may import, by their full names."""
     numpy = Module(
         "numpy",
         {
@@ -152,7 +159,7 @@ def modules(left: Run) -> Mapping[str, Module]:
 
 
 def builtins(left: Run) -> Mapping[str, Any]:
-    """Functions that need no import."""
+    """Return the functions that are available without import."""
     return {
         "all": all,
         "any": any,

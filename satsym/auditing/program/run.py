@@ -1,8 +1,8 @@
-"""What a printed Python program does, found by walking its tree: no text is ever handed to Python to execute.
+"""Interpreter of printed Python programs, which walks the syntax tree and never passes text to Python for execution.
 
 Assignments, functions, calls of a few library functions (:mod:`satsym.auditing.program.library`), arithmetic, slices,
-comparisons, formatted texts and one loop inside ``all`` or ``any`` are known; anything else is refused. Every node
-costs a step, and steps, sizes and numbers are bounded.
+comparisons, formatted texts and one loop inside ``all`` or ``any`` are supported; anything else is refused. Each node
+counts as a step; the numbers of steps and entries and the size of integers are limited.
 """
 
 from __future__ import annotations
@@ -47,25 +47,27 @@ def run(
     until: str = "",
     world: Mapping[str, Any] | None = None,
 ) -> Run:
-    """Walk through a program.
+    """Interpret a program and return its result.
 
     Parameters
     ----------
+    program
+        The parsed program.
     given
-        Values that variables get instead of what the program assigns to them.
+        Values of variables that replace those that the program assigns.
     until
-        Stop once this name has a value; by default go on to the end.
+        Name of a variable after whose assignment the run ends; by default the program runs to its end.
     world
-        Values that names have before the program begins.
+        Values of names before the program begins.
 
     Raises
     ------
     Stops
-        If it would stop with an error; with the line.
+        If the program would stop with an error; the message contains the line.
     OverBudget
-        If it does too much.
+        If the program exceeds a limit.
     BadInput
-        If it does what is not known here.
+        If the program uses anything that is not supported.
     """
 
     def walk() -> Run:
@@ -81,7 +83,7 @@ def run(
 
 
 class _Returned(Exception):
-    """Carries what a function returns, its argument, to where it was called."""
+    """Control flow of a return statement; the argument is the returned value."""
 
 
 class _Walker:
@@ -93,7 +95,7 @@ class _Walker:
         self._steps = self._calls = 0
 
     def statement(self, found: ast.stmt) -> None:
-        """Execute a statement of the program itself."""
+        """Execute a top-level statement of the program."""
         try:
             self._execute(found, self.world)
         except BadInput as error:

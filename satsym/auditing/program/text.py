@@ -1,7 +1,6 @@
-"""A printed Python program: its text is parsed and measured, never executed; what its names refer to.
+"""A printed Python program as text and syntax tree, and the dependencies between its names.
 
-What it does is found by :mod:`satsym.auditing.program.run`, which walks the tree that is read here and knows a few
-kinds of statements and expressions only.
+The text is parsed and its length measured, but never executed; :mod:`satsym.auditing.program.run` interprets the tree.
 """
 
 from __future__ import annotations
@@ -20,25 +19,31 @@ MAX_DEPTH = 50
 
 
 class Stops(BadInput):
-    """The program would stop here with an error, as Python would say, too."""
+    """A printed program would stop here with an error, as in Python."""
 
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """A program as it is printed, and the statements Python's parser finds in it."""
+    """A printed program with its parsed statements."""
 
     text: str
-    """Its lines, joined."""
+    """Lines of the program, joined."""
     statements: tuple[ast.stmt, ...]
-    """From first to last."""
+    """Statements in order."""
 
     def line(self, node: ast.AST) -> str:
-        """The printed line that a node begins on."""
+        """Return the printed line on which a node begins."""
         return self.text.splitlines()[getattr(node, "lineno", 1) - 1].strip()
 
 
 def read(lines: Sequence[object]) -> Program:
-    """Parse a program."""
+    """Parse a program given as lines.
+
+    Raises
+    ------
+    BadInput
+        If the text is too long, nested too deeply, or not Python.
+    """
     text = "\n".join(str(line) for line in lines)
     depth = 0
     for character in text:
@@ -58,9 +63,9 @@ def read(lines: Sequence[object]) -> Program:
 
 
 def loose_names(program: Program) -> list[str]:
-    """Names that have no value yet where they are used, in the order of the lines.
+    """Return the names that have no value when they are used, in the order of the lines.
 
-    The body of a function is looked at with what the whole program defines, for it runs when it is called.
+    The body of a function may use all names of the program, as it runs only when the function is called.
     """
     everywhere = {name for statement in program.statements for name in given_names(statement)}
     known, found = set(dir(builtins)), []
@@ -72,7 +77,7 @@ def loose_names(program: Program) -> list[str]:
 
 
 def given_names(statement: ast.stmt) -> list[str]:
-    """Names to which a statement gives a value."""
+    """Return the names to which a statement assigns a value."""
     if isinstance(statement, ast.Import | ast.ImportFrom):
         return [(alias.asname or alias.name).partition(".")[0] for alias in statement.names]
     if isinstance(statement, ast.FunctionDef):
@@ -83,7 +88,7 @@ def given_names(statement: ast.stmt) -> list[str]:
 
 
 def sources(program: Program, names: Iterable[str]) -> set[str]:
-    """Names that the values of some names are made from, directly or not; a function from what its body uses."""
+    """Return the names on which the values of some names depend, directly or not; a function depends on its body."""
     made_from: dict[str, set[str]] = {}
     for statement in program.statements:
         for name in given_names(statement):
@@ -98,12 +103,12 @@ def sources(program: Program, names: Iterable[str]) -> set[str]:
 
 
 def names_in(node: ast.AST) -> set[str]:
-    """Names that an expression uses."""
+    """Return the names that an expression uses."""
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)}
 
 
 def _used_names(statement: ast.stmt) -> Iterator[str]:
-    """Names that come from outside a statement: neither parameters of a function nor given in it."""
+    """Yield the names that a statement uses from outside: neither its parameters nor assigned within it."""
     own: set[str] = set()
     for node in ast.walk(statement):
         if isinstance(node, ast.arg):

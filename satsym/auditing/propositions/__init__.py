@@ -1,1 +1,1 @@
-"""Claims as propositions: read from the ledger's safe language, and found true, false or undecided."""
+"""Propositions: claims that are read from the language of ledgers and found true, false or undecided."""

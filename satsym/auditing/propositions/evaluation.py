@@ -1,7 +1,8 @@
-"""Whether a proposition is true: by measuring its terms, relation by relation.
+"""Evaluation of propositions: their terms are computed and compared, relation by relation.
 
-Truth has three values, as Kleene's logic has: what cannot be measured is undecided, and so is what depends on it. An
-answer says what decides it: the relation that fails, the member that refutes, or in how many members it holds.
+Truth has three values as in Kleene's logic: a relation between values that cannot be computed is undecided, and so is
+whatever depends on it. An answer names what decides it: the relation that fails, the member that refutes, or the number
+of members for which the proposition holds.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ from satsym.auditing.propositions.values import Family, Record, Undecided, alike
 from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
-"""True, false, or ``None`` where it is undecided."""
+"""True, false, or ``None`` for undecided."""
 _OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
 _JUDGED = (*QUANTIFIERS, *CONNECTIVES)
 _text = lru_cache(maxsize=4096)(ast.unparse)
 _TOLD = 4
-"""Members of a list for each of which what is measured is told."""
+"""Number of members of a list up to which the computed values are reported for each member."""
 Lookups: TypeAlias = Mapping[str, Callable[[str], Any]]
 """What a proposition may look up in its document: ``row``, ``text``, ``meanings``, ``items`` and ``symbol``."""
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
@@ -48,41 +49,41 @@ _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, 
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether a proposition is true, and what decides it."""
+    """Whether a proposition is true, and the relations that decide it."""
 
     truth: Truth
     """True, false or undecided."""
     reasons: tuple[str, ...] = ()
-    """The relations that decide it, with the values measured."""
+    """The relations that decide the answer, with computed values."""
     evidence: Mapping[str, str] = field(default_factory=dict)
-    """Measured values by their terms."""
+    """Computed values by their terms."""
     members: int = 0
-    """How many the largest family has that it was tried on."""
+    """Number of members of the largest family for which the proposition was evaluated."""
     idle: frozenset[str] = frozenset()
-    """Conditions in it that nothing meets, so that what they imply says nothing."""
+    """Conditions that no member satisfies, so that an implication with this condition states nothing."""
     miss: Fit | None = None
-    """How it fails where it does so by a last digit, or by the factor of a unit, alone."""
+    """Kind of a failure that is only a wrong last digit or a wrong factor of a unit; otherwise ``None``."""
 
     @property
     def vacuous(self) -> bool:
-        """Whether it holds, or a part of it does, only because nothing meets its condition."""
+        """Whether the proposition, or a part of it, holds only because nothing satisfies its condition."""
         return bool(self.idle)
 
 
 class Evaluation:
-    """Evaluates propositions in certain words, in a document if any; ``own`` is what the row itself prints."""
+    """Evaluator of propositions; `lookups` is the document, if any, and `own` the printed text of the row itself."""
 
     def __init__(self, words: Words, lookups: Lookups = MappingProxyType({}), own: Any = None) -> None:
         self._words, self._lookups, self._own = words, lookups, own
 
     def answer(self, proposition: Proposition) -> Answer:
-        """Whether a proposition is true."""
+        """Return whether a proposition is true."""
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return self._judge(proposition.tree, {})
 
     def term(self, proposition: Proposition) -> str:
-        """The value of a term that is no proposition, in words."""
+        """Return the value of a term in words."""
         with np.errstate(all="ignore"):
             try:
                 return in_words(self._value(proposition.tree, {}))
@@ -172,7 +173,7 @@ class Evaluation:
     def _members(
         self, parts: list[ast.comprehension], bound: Mapping[str, Any]
     ) -> Iterator[tuple[str, Mapping[str, Any], Any]]:
-        """Each member by name, with what is bound, and the first family it comes from."""
+        """Yield each member of a family by name, with the bound names, and the family of the first quantifier."""
         part, *others = parts
         family = self._value(part.iter, bound)
         for member in _iterated(part, family):
@@ -292,7 +293,10 @@ def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
 
 
 def _joined(answers: list[Answer], conjunction: bool) -> Answer:
-    """And, or of several. Each part of an "and" has to say something; of an "or" one does."""
+    """Return the answer for "and" or "or" of several propositions.
+
+    An "and" is vacuous if one of its parts is; an "or" only if all true parts are.
+    """
     deciding = [answer for answer in answers if answer.truth is (not conjunction)]
     if deciding:
         first = min(deciding, key=lambda answer: answer.vacuous)

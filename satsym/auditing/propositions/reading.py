@@ -1,8 +1,8 @@
-"""The language of claims: the text of a proposition -> a checked tree of Python's own expression syntax.
+"""Parser of propositions: a text becomes a checked syntax tree in Python's expression syntax.
 
-Nothing is ever evaluated here. The text is measured before Python's parser sees it; what the parser gives back may
-hold only the kinds of nodes that are listed, and every name must be known: a measurement, a family, a convention, a
-member that a quantifier binds, or a symbol of the row's notation.
+Nothing is evaluated here. The length and depth of the text are limited before Python's parser reads it, only listed
+kinds of nodes are allowed, and every name must be known: a measurement, family or convention, a name bound by a
+quantifier, or a symbol of the row's notation.
 """
 
 from __future__ import annotations
@@ -19,18 +19,21 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 QUANTIFIERS = ("all", "any")
-"""They take a comprehension: ``all(P(s) for s in FAMILY)``."""
+"""Quantifiers, which take a comprehension: ``all(P(s) for s in FAMILY)``."""
 CONNECTIVES = ("implies", "iff")
-"""They take two propositions."""
+"""Connectives, which take two propositions."""
 LOOKUPS = ("row", "text")
-"""``row['2.19', 'k1']`` is the printed formula of a row, ``text['program', 'lines']`` its letters as they stand.
-``text['program', 'loop*']`` lists those of all rows that begin so."""
+"""Tables that a proposition may look up.
+
+``row['2.19', 'k1']`` is the printed formula of a row, and ``text['program', 'lines']`` the printed text of a row.
+``text['program', 'loop*']`` lists the texts of all rows whose keys begin alike.
+"""
 MEANINGS = "meanings"
-"""``meanings['x1']`` lists what the document uses a letter for, from its notations."""
+"""Name of a table: ``meanings['x1']`` lists the meanings of a letter in all notations of the document."""
 ITEMS = "items"
-"""What the document numbers: equations, theorems, tables, figures."""
+"""Name of the list of numbered items of a document: equations, theorems, tables and figures."""
 PRINTED = "printed"
-"""In ``holds``: what the row itself prints, letter by letter."""
+"""Name of the printed text of the row itself, for use in ``holds``."""
 
 _BRACES = re.compile(r"\{([^{}]*)\}")
 _ALLOWED: tuple[type[ast.AST], ...] = (
@@ -45,44 +48,44 @@ _WORDS: Mapping[type[ast.AST], str] = {ast.Lambda: "lambda", ast.IfExp: "if/else
 
 @dataclass(frozen=True)
 class Words:
-    """What a proposition may name."""
+    """Names that a proposition may use."""
 
     functions: Mapping[str, Callable[..., Any]]
     """Measurements by name."""
     values: Mapping[str, Callable[[], Any]]
-    """Families, conventions and constants by name, each made when it is asked for."""
+    """Families, conventions and constants by name; each is created on demand."""
     symbols: Collection[str] = ()
     """Symbols of the notation."""
 
 
 @dataclass(frozen=True)
 class Proposition:
-    """A claim that can be found true or false."""
+    """A claim that can be true or false."""
 
     text: str
-    """As the ledger has it."""
+    """Text of the proposition in the ledger."""
     tree: ast.expr
-    """The tree of the text, checked."""
+    """Checked syntax tree of the text."""
     rows: tuple[str, ...] = ()
-    """Keys of the rows that it looks up."""
+    """Keys of the rows that the proposition looks up."""
     symbols: tuple[str, ...] = ()
-    """Symbols of the notation that it names, and ``printed``."""
+    """Symbols of the notation that the proposition uses, and ``printed`` if it is used."""
 
     @property
     def quotes(self) -> bool:
-        """Whether it looks at letters as they stand in the document, such as the lines of a program."""
+        """Whether the proposition refers to printed text of the document, such as the lines of a program."""
         return PRINTED in self.symbols or any(
             isinstance(node, ast.Name) and node.id == "text" for node in ast.walk(self.tree)
         )
 
     @property
     def stands_alone(self) -> bool:
-        """Whether it says the same in every document: it looks up no row and no symbol of a notation."""
+        """Whether the proposition is independent of the document: it uses no row and no symbol of a notation."""
         return not self.rows and not self.symbols
 
 
 def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
-    """Read a proposition; ``own`` is whether it may speak of what its own row prints, as ``printed``."""
+    """Read a proposition; with `own` it may refer to the printed text of its own row as ``printed``."""
     if len(text) > MAX_LENGTH:
         raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
     measured(text, judging=True, relations=True)
@@ -94,7 +97,7 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
 
 
 def explanation(text: str, words: Words, *, own: bool = False) -> tuple[str | Proposition, ...]:
-    """A sentence with terms in braces: texts, and the terms between them, read."""
+    """Read an explanation with terms in braces, and return its texts and terms in order."""
     parts = _BRACES.split(text)
     if any(brace in part for part in parts[::2] for brace in "{}"):
         raise BadInput("a brace has no matching brace; write a term between { and }")
@@ -102,7 +105,7 @@ def explanation(text: str, words: Words, *, own: bool = False) -> tuple[str | Pr
 
 
 def is_proposition(text: str) -> bool:
-    """Whether a text is a relation or joined of relations, and not a formula or an address."""
+    """Return whether a text is a relation or a combination of relations, and not a formula or an address."""
     try:
         tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -113,7 +116,7 @@ def is_proposition(text: str) -> bool:
 
 
 def shape(tree: ast.expr) -> str:
-    """The form of a proposition, whatever its numbers, texts and parts are called."""
+    """Return the form of a proposition with numbers, texts, lists and attributes masked."""
 
     class Masked(ast.NodeTransformer):
         def visit_Constant(self, _: ast.Constant) -> ast.Name:
@@ -129,12 +132,12 @@ def shape(tree: ast.expr) -> str:
 
 
 def matching(key: str) -> Callable[[str], bool]:
-    """Whether a row is meant by a key; one that ends in a star means all rows that begin so."""
+    """Return a test whether a row is meant by a key; a key that ends in a star means all keys that begin alike."""
     return lambda name: name.startswith(key[:-1]) if key.endswith("*") else name == key
 
 
 def keys_in(tree: ast.AST) -> list[str]:
-    """Keys of the rows that a tree looks up."""
+    """Return the keys of the rows that a tree looks up."""
     return [
         row_key(node)
         for node in ast.walk(tree)
@@ -143,7 +146,7 @@ def keys_in(tree: ast.AST) -> list[str]:
 
 
 def row_key(node: ast.Subscript) -> str:
-    """The key that ``row['item']`` or ``row['item', 'part']`` names."""
+    """Return the key of the row that ``row['item']`` or ``row['item', 'part']`` refers to."""
     parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     if not all(isinstance(part, ast.Constant) and isinstance(part.value, str) for part in parts):
         raise BadInput("the index of a row must be its item and part in quotes, as in row['2.19', 'k1']")
@@ -151,7 +154,7 @@ def row_key(node: ast.Subscript) -> str:
 
 
 class _Check(ast.NodeVisitor):
-    """Refuses what is not listed, and names that nothing bears."""
+    """Check that refuses kinds of nodes that are not allowed, and unknown names."""
 
     def __init__(self, words: Words, own: bool) -> None:
         self._words, self._own = words, own

@@ -1,8 +1,8 @@
-"""Relations between values: when two are equal, and which is the greater.
+"""Relations between values: equality and order.
 
-Exact values are compared exactly. Measured ones are equal where they agree but for what measuring leaves
-(:data:`RELATIVE`, :data:`ABSOLUTE`), and one is less than the other only if it is so by more. A number in quotes is
-what a document prints: it stands for the interval that rounding, or cutting, its digits allows, in its unit.
+Exact values are compared exactly. Computed values are equal if they agree within the tolerances :data:`RELATIVE` and
+:data:`ABSOLUTE`, and one is less than the other only if it differs by more. A number in quotes is a printed number: it
+stands for the interval of values that are rounded or truncated to its digits, in its unit.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from satsym.status import BadInput
 from satsym.symbolic.factoring import factored
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9
-"""How far two measured numbers may be apart and still be called equal."""
+"""Relative and absolute tolerance within which two computed numbers are called equal."""
 
 
 class Fit(Enum):
-    """How a value lies to a printed number."""
+    """Position of a value relative to the interval of a printed number."""
 
     INSIDE = "inside"
     NEAR = "near"  # a last digit off
@@ -37,18 +37,23 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class Comparison:
-    """A relation between two values."""
+    """Result of comparing two values."""
 
     holds: bool
-    """Whether it is true."""
+    """Whether the relation holds."""
     fit: Fit | None = None
-    """How the value lies to the printed number, where there is one."""
+    """Position of the value relative to the printed number; ``None`` if no number is printed."""
 
 
 def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
-    """Two values in a relation.
+    """Return whether a relation between two values holds.
 
-    What is no number, or cannot be distinguished, is undecided; what does not compare is refused.
+    Raises
+    ------
+    Undecided
+        If a value is not a number, or the values cannot be distinguished.
+    BadInput
+        If the values cannot be compared.
     """
     if isinstance(operator, ast.In | ast.NotIn):
         inside = any(equal(left, entry).holds for entry in _entries(right))
@@ -68,16 +73,17 @@ _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
 
 
 def fit(value: Any, printed: PrintedNumber) -> Fit:
-    """How a value lies to a printed number: inside what its digits claim, a last digit off, or outside.
+    """Return whether a value is inside the interval of a printed number, off by the last digit, or outside.
 
-    Digits claim what rounds to them, and what is cut to them: 0.15 may stand for anything from 0.145 to below 0.16.
+    The interval contains the values that are rounded or truncated to the digits: 0.15 is anything from 0.145 to below
+    0.16.
     """
     number = _in_printed_unit(value, printed.unit)
     return fit_of_range(number, number, printed)
 
 
 def fit_of_range(low: float, high: float, printed: PrintedNumber) -> Fit:
-    """As :func:`fit`, for a value in the printed unit that is known to lie in a range."""
+    """Return the position of a value, known to lie in a range, relative to a printed number; see :func:`fit`."""
     half = float(printed.half_unit)
     sign = -1.0 if printed.value < 0 else 1.0
     above = sorted(sign * (number - float(printed.value)) / half for number in (low, high))
@@ -100,7 +106,7 @@ def _in_printed_unit(value: Any, unit: str) -> float:
 
 
 def equal(left: Any, right: Any) -> Comparison:
-    """Whether two values are equal, and how they miss one another where they are not."""
+    """Return whether two values are equal, and if not whether only a last digit or a unit is wrong."""
     if isinstance(left, str) and not isinstance(right, str):
         left, right = right, left
     if isinstance(left, str | bool | np.bool_):
@@ -125,7 +131,7 @@ def equal(left: Any, right: Any) -> Comparison:
 
 
 def _of_unit(one: Quantity, other: Quantity) -> bool:
-    """Whether two quantities differ by powers of ten, or of the degree in radians, alone."""
+    """Return whether two quantities differ only by powers of ten, or by the factor between degrees and radians."""
     if one.value * other.value <= 0.0:
         return False
     ratio = math.log(one.value / other.value)
@@ -146,7 +152,7 @@ def _same(left: Any, right: Any) -> bool:
 
 
 def order(left: Any, right: Any) -> int:
-    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
+    """Return 1 if the first value is greater, -1 if it is less, 0 if both are equal."""
     if isinstance(left, str):
         return -order(right, left)
     if isinstance(right, str):

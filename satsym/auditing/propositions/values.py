@@ -1,4 +1,4 @@
-"""What the terms of a proposition are: numbers, exact expressions, matrices, lists, texts, and records of these."""
+"""Values of the terms of a proposition: numbers, exact expressions, matrices, lists, texts, and records of these."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from satsym.status import BadInput
 from satsym.wording import refuse_unknown
 
 _LISTED = 6
-"""Entries of a list that are shown."""
+"""Number of entries of a list that are shown."""
 
 
 class Undecided(Exception):
-    """A measurement that has no answer; the reason is said."""
+    """A measurement has no answer; the message contains the reason."""
 
 
 @contextmanager
 def undecided_if_refused() -> Iterator[None]:
-    """What is refused within has no answer, unless it is refused for taking too much."""
+    """Turn refusals within the context into undecided answers, except those for too much work."""
     try:
         yield
     except OverBudget:
@@ -37,26 +37,32 @@ def undecided_if_refused() -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Named values that belong together: the state at an end, a trajectory, a member of a family."""
+    """Named values that belong together, such as a state, a trajectory, or a member of a family."""
 
     name: str
-    """How it is called where it confirms or refutes."""
+    """Name of the record in answers."""
     parts: Mapping[str, Any] = field(default_factory=dict)
-    """Its values by name; a proposition writes ``record.name``."""
+    """Values by name; a proposition accesses them as ``record.name``."""
 
     def part(self, name: str) -> Any:
-        """One of its values."""
+        """Return one of the values of the record.
+
+        Raises
+        ------
+        BadInput
+            If the record has no value of this name.
+        """
         refuse_unknown(f"{self.name} has no", name, self.parts)
         return self.parts[name]
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Members of a kind, some from textbooks and some at random, over which a claim quantifies."""
+    """A family of systems, motions etc., from textbooks and at random, over which a claim quantifies."""
 
     name: str
     of: str
-    """As the language has it, and what its members are, in the plural."""
+    """Name of the family in propositions, and the plural noun for its members."""
     members: tuple[Record, ...]
 
     def __iter__(self) -> Iterator[Record]:
@@ -67,12 +73,12 @@ class Family:
 
 
 def is_exact(value: Any) -> bool:
-    """Whether a value is an expression or a matrix of sympy's."""
+    """Return whether a value is a SymPy expression or matrix."""
     return type(value).__module__.startswith("sympy.")
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a plain number, exact or not."""
+    """Return whether a value is a number, exact or not."""
     if isinstance(value, bool | np.bool_ | str):
         return False
     return isinstance(value, int | float | complex | np.number) or (is_exact(value) and bool(value.is_number))
@@ -80,7 +86,7 @@ def is_number(value: Any) -> bool:
 
 @lru_cache(maxsize=4096)
 def measured(of: Any) -> Any:
-    """An exact number or matrix as an array of plain numbers."""
+    """Return an exact number or matrix as an array of numbers."""
     if of.free_symbols:
         raise BadInput(f"{of} contains symbols, but must consist of numbers")
     found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
@@ -90,7 +96,7 @@ def measured(of: Any) -> Any:
 
 
 def numbers(of: Any) -> Array:
-    """A matrix with numbers, its letters taken as 1."""
+    """Return a matrix as an array of numbers, with all letters set to 1."""
     return _numbers(of) if is_exact(of) else np.asarray(of, dtype=float)
 
 
@@ -100,7 +106,7 @@ def _numbers(of: Any) -> Array:
 
 
 def alike(left: Any, right: Any) -> tuple[Any, Any]:
-    """Two values that can be calculated with together: an exact one beside measured ones becomes a measured one."""
+    """Return two values in compatible forms: an exact value next to an array becomes an array."""
     for one, other in ((left, right), (right, left)):
         if isinstance(one, np.ndarray) and is_exact(other):
             plain = measured(other)[()]
@@ -109,7 +115,7 @@ def alike(left: Any, right: Any) -> tuple[Any, Any]:
 
 
 def in_words(value: Any) -> str:
-    """A value as a person would write it, in a few characters."""
+    """Return a short text for a value."""
     if isinstance(value, bool | np.bool_):
         return str(bool(value)).lower()
     if isinstance(value, Record):
