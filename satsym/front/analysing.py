@@ -31,7 +31,7 @@ Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation 
 
 
 class _Said(ABC):
-    """A result with an object for JSON and a text for people."""
+    """A result that can be returned as an object for JSON and printed as text."""
 
     @property
     @abstractmethod
@@ -70,7 +70,7 @@ class Analysis(_Said):
     linear, orbit
         The linear analysis and the analysis of the orbit, as plain data; one of them may be ``None``.
     derivation
-        The derivation of the model, if it is available.
+        The derivation of the model if it was analysed without an instance file, otherwise ``None``.
     """
 
     given: Case | Kernels
@@ -149,6 +149,11 @@ def analyse(subject: Subject) -> Analysis:
     subject
         An instance, or a model with its default parameters; as a Python object, a name or a path.
 
+    Returns
+    -------
+    Analysis
+        The analysis, which contains a linear analysis, an analysis of the orbit, or both.
+
     Raises
     ------
     BadInput
@@ -161,12 +166,17 @@ def analyse(subject: Subject) -> Analysis:
 @single_threaded()
 @in_one_line
 def lqr(subject: Subject) -> Regulator:
-    """Design the linear feedback of minimum cost.
+    """Design the linear feedback u = -K x of minimum cost (linear-quadratic regulator).
 
     Parameters
     ----------
     subject
-        An instance with a table [lqr], or a model, whose weights are then all 1; as for :func:`analyse`.
+        An instance with a table [lqr], or a model, for which all weights are 1; given as for :func:`analyse`.
+
+    Returns
+    -------
+    Regulator
+        The gain K, the solution P of the Riccati equation, and the properties of the closed loop.
 
     Raises
     ------
@@ -180,7 +190,7 @@ def lqr(subject: Subject) -> Regulator:
 
 
 def _given(subject: Subject) -> tuple[Case | Kernels, Derivation | None]:
-    """Return the subject for lower floors, and the derivation of a model that is given as such."""
+    """Return the instance or kernels to be analysed, and the derivation if the subject is a model object."""
     if isinstance(subject, Instance):
         subject.case.require_numbers()
         return subject.case, None

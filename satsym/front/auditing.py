@@ -23,14 +23,14 @@ from satsym.report.terminal.audit import checked_text
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Audit:
-    """The audit of printed documents, row by row.
+    """The audit of documents: each claim (row) of each document with its verdict.
 
     Attributes
     ----------
     ledgers
-        The ledgers of the documents.
+        The ledgers of the documents. A ledger lists the claims that a document makes.
     judged
-        Key of a document -> its items with their verdicts.
+        Key of a document -> its judged rows.
     """
 
     ledgers: tuple[Ledger, ...]
@@ -61,13 +61,13 @@ class Audit:
         return to_json(self.to_dict())
 
     def latex(self, language: str = "en") -> str:
-        """Return the report as LaTeX."""
+        """Return the report of the audit as LaTeX, in English (``"en"``) or Indonesian (``"id"``)."""
         from satsym.report.latex.audit import render
 
         return render(self.ledgers, self.judged, language)
 
     def html(self, language: str = "en") -> str:
-        """Return the report as a self-contained page."""
+        """Return the report of the audit as a self-contained page, in English (``"en"``) or Indonesian (``"id"``)."""
         from satsym.report.html.audit import render
 
         return render(self.ledgers, self.judged, language)
@@ -85,16 +85,22 @@ class Audit:
 @single_threaded()
 @in_one_line
 def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) -> Audit:
-    """Judge the rows of documents.
+    """Check each claim (row) that a document makes against what satsym derives, and return a verdict for each.
 
     Parameters
     ----------
     ledgers
-        Keys of documents that come with satsym, or paths of ledgers; by default all documents.
+        Keys of documents that are shipped with satsym, or paths of ledgers, the files that list the claims of a
+        document; by default all shipped documents.
     items
-        Items to check; by default all.
+        Numbers of equations, tables etc. whose rows are checked; by default all.
     fresh
-        Whether to recompute everything, without the cache.
+        Whether to recompute all verdicts instead of using cached ones.
+
+    Returns
+    -------
+    Audit
+        The verdicts on all rows, with a report.
 
     Raises
     ------
@@ -109,14 +115,14 @@ def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Checked:
-    """The verdict on a formula.
+    """The result of checking a printed formula.
 
     Attributes
     ----------
     formula
-        As it was given.
+        The formula as it was entered.
     answers
-        One for each equation in it.
+        One answer for each equation in the formula.
     """
 
     formula: str
@@ -124,27 +130,30 @@ class Checked:
 
     @property
     def verdict(self) -> Verdict:
-        """Return ``right``, ``wrong`` or ``undecided``; for several equations, the worst."""
+        """Return ``right``, ``wrong`` or ``undecided``; for a formula with several equations, the worst of them."""
         return checking.worst(self.answers).verdict
 
     @property
     def address(self) -> str:
-        """Return the address of the equation that the formula states, or is closest to."""
+        """Return the address of the equation of the model that the formula states, or is most similar to."""
         return checking.worst(self.answers).address
 
     @property
     def diagnosis(self) -> str:
-        """Return what is wrong; empty where nothing is."""
+        """Return what is wrong with the formula; empty for a right formula."""
         return checking.worst(self.answers).diagnosis
 
     @property
     def correct(self) -> str:
-        """Return the right equation in the formula's notation; empty where it is right, or none is known."""
+        """Return the correct equation in the notation of the formula.
+
+        It is empty for a right formula, or if none is known.
+        """
         return checking.worst(self.answers).correct
 
     @property
     def letters(self) -> Mapping[str, str]:
-        """Map printed letters to names of the model, where there was a doubt."""
+        """Return printed letters -> names of the model, for letters whose meaning was given or guessed."""
         return {printed: ours for answer in self.answers for printed, ours in answer.letters.items()}
 
     def __bool__(self) -> bool:
@@ -163,7 +172,7 @@ class Checked:
 
 
 def _said(answer: Answer) -> str:
-    """Return the verdict on one equation of a formula."""
+    """Return the verdict on one equation of a formula as text."""
     said = "is right" if answer.verdict == "wrong" and answer.correct else answer.verdict
     return f"{said}: {answer.address}".replace("_", r"\_") if answer.address else said
 
@@ -183,10 +192,15 @@ def check(formula: str, model: str, let: str | Sequence[str] | Mapping[str, str]
     free
         Whether the formula describes the uncontrolled motion.
 
+    Returns
+    -------
+    Checked
+        The verdict, with a diagnosis and the correct equation if the formula is wrong.
+
     Raises
     ------
     BadInput
-        If the formula cannot be read (the message names the place), or if there is no such model or name.
+        If the formula cannot be read (the message names the position), or if there is no such model or name.
     """
     told = [f"{printed}={ours}" for printed, ours in let.items()] if isinstance(let, Mapping) else let
     found = check_in(formula, model, Path(), [told] if isinstance(told, str) else list(told), free)

@@ -1,8 +1,9 @@
-"""Trajectories between their nodes: integrated from the nodes on both sides, and so as accurate as the nodes.
+"""Interpolation of trajectories between their nodes by integration from both neighbouring nodes.
 
-From each node the equations that the trajectory obeys are integrated by RK4, in as many steps as two runs need to
-agree; the two results between neighbouring nodes are blended, with more weight on the nearer node. Where a control
-meets a bound or jumps between two nodes, each side keeps its own.
+Interpolated values are therefore as accurate as those at the nodes. From each node the equations of the trajectory are
+integrated by RK4, with steps that are halved until two runs agree. The two results in an interval are blended, with
+more weight on the nearer node. If a control meets a bound or jumps within the interval, they are not blended: each
+applies on its own side.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
-"""A function from times (M,), values (k, M) and numbers of preceding nodes to rates (k, M)."""
+"""A function of times (M,), values (k, M) and indices of the preceding nodes that returns time derivatives (k, M)."""
 
 FRACTION = 0.1
-"""Fraction of the instance's tolerance that integration between nodes may add to the error."""
+"""Fraction of the instance's tolerance that interpolation may add to the error."""
 MOST_STEPS = 64
-"""Largest number of steps between two nodes."""
+"""Largest number of integration steps between a node and an interpolated point."""
 ROUNDING = 1e-13
 GAINED = 15.0
 """Ratio of the difference between two runs of RK4, one with half the steps, to the error of the better one."""
@@ -38,13 +39,13 @@ class Motion:
     Attributes
     ----------
     times, values
-        Nodes (N+1,) that never go back, and values there, shape (k, N+1).
+        Nodes (N+1,) in non-decreasing order, and values there, shape (k, N+1).
     rates
-        Of change.
+        Function that returns the time derivatives.
     corners
-        Times between nodes at which rates are not smooth.
+        Times between nodes at which the time derivatives are not smooth.
     tolerance
-        Relative to the size of each value.
+        Tolerance of the interpolation, relative to the largest magnitude of each value.
     """
 
     times: Array
@@ -54,7 +55,10 @@ class Motion:
     tolerance: float
 
     def behind(self, t: Array) -> NDArray[np.intp]:
-        """Return the intervals that contain some times; a time that occurs twice belongs to the later interval."""
+        """Return the indices of the intervals that contain some times.
+
+        A repeated time belongs to the later interval.
+        """
         return np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
 
     @np.errstate(all="ignore")
@@ -72,7 +76,7 @@ class Motion:
         return np.where(weight == 0.0, first, np.where(weight == 1.0, second, both))
 
     def _from(self, node: NDArray[np.intp], interval: NDArray[np.intp], t: Array) -> Array:
-        """Return values at times by integration from nodes, in more and more steps until two runs agree."""
+        """Return values at times by integration from nodes, with steps that are halved until two runs agree."""
         steps, found, enough = 1, self._run(node, interval, t, 1), FRACTION * self.tolerance
         size = np.abs(self.values).max(axis=1, keepdims=True)
         before = np.inf
@@ -103,11 +107,11 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Controls between nodes, arc by arc; a time that occurs twice separates two arcs.
+    """Controls between nodes, one arc at a time; a node time that occurs twice separates two arcs.
 
-    Constant controls are exact. Others are splines of degree five, which suit smooth arcs, or cubics that do not
-    overshoot (PCHIP), which suit jumps: the one that predicts every second node better from the others is taken.
-    Controls keep their bounds.
+    Constant controls are interpolated exactly. Other controls are interpolated by splines of degree five, which suit
+    smooth arcs, or by monotonic cubics (PCHIP), which suit jumps: the method that predicts every second node better
+    from the remaining nodes is used. Interpolated controls are projected onto the control set.
     """
 
     times: Array
@@ -117,11 +121,11 @@ class Pieces:
 
     @cached_property
     def edges(self) -> NDArray[np.intp]:
-        """Return the first node of each arc."""
+        """Return the index of the first node of each arc."""
         return np.concatenate([[0], np.flatnonzero(np.diff(self.times) == 0.0) + 1])
 
     def __call__(self, t: Array, left: NDArray[np.intp]) -> Array:
-        """Return controls at times (M,), in the intervals after the nodes with these numbers; shape (m, M)."""
+        """Return controls at times (M,), in the intervals after the nodes with indices `left`; shape (m, M)."""
         found = np.empty((len(self.values), len(t)))
         arcs = np.searchsorted(self.edges, left, side="right") - 1
         for arc in distinct(arcs):
@@ -160,7 +164,7 @@ def _monotone(times: Array, values: Array) -> Callable[[Array], Array]:
 
 
 def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array) -> tuple[Motion, Pieces | None]:
-    """Return the motion of states and costates, (2n, N+1), under the control that minimises H."""
+    """Return the motion of states and costates, shape (2n, N+1), under the control that minimises the Hamiltonian."""
     model, p, bounds, n = case.model, case.parameters, case.control_set.arguments, len(x)
 
     def rates(t: Array, z: Array, _: NDArray[np.intp]) -> Array:
@@ -172,7 +176,7 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
 def bounded(
     case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[tuple[int, ...]]
 ) -> tuple[Motion, Pieces | None]:
-    """Return the motion of an extremal with arcs on boundaries of constraints, whose number each arc has."""
+    """Return the motion of an extremal with boundary arcs; `arcs` are the active constraints on each arc."""
     from satsym.solvers.constrained.active import field
 
     edges = np.flatnonzero(np.diff(times) == 0.0) + 1
@@ -188,7 +192,7 @@ def bounded(
 
 
 def controlled(case: Instance, times: Array, x: Array, u: Array, lam: Array | None) -> tuple[Motion, Pieces]:
-    """Return the motion of states, and of costates if any, under controls interpolated from the nodes."""
+    """Return the motion of states, and of costates if given, under controls interpolated from the nodes."""
     model, p, n = case.model, case.parameters, len(x)
     pieces = Pieces(times, u, case.control_set)
 

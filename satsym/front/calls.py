@@ -1,9 +1,9 @@
 """Wrappers of calls from Python: errors about bad input in one line, and linear algebra on one thread.
 
-The traceback of an error about bad input ends at the caller's own line. On matrices as small as ours threads cost
-several times what they save, and on cores that others use as well they wait for each other, until time is up before a
-certificate has compared all competitors. The command line sets the number of threads before libraries are loaded; in a
-notebook some are loaded already.
+The traceback of an error about bad input ends at the caller's own line. For matrices as small as those of satsym, the
+overhead of threads exceeds their gain, and on cores that are also used by others threads wait for each other, so that a
+certificate may run out of time. The command line sets the number of threads before libraries are loaded, but in a
+notebook some libraries are already loaded.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ Answer = TypeVar("Answer")
 
 
 def in_one_line(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
-    """Return a function whose refusals have a traceback that ends at its caller.
+    """Return a function that raises BadInput with a traceback that ends at the caller of the function.
 
-    SATSYM_DEBUG=1 in the environment keeps the whole traceback.
+    If SATSYM_DEBUG=1 is set in the environment, the whole traceback is kept.
     """
 
     @wraps(function)
@@ -40,17 +40,18 @@ def in_one_line(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
 
 
 VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""Variables of the environment that limit libraries to one thread when they are loaded."""
+"""Environment variables that limit libraries of linear algebra to one thread when these are loaded."""
 
 _HELD = RLock()
-"""Lock of the thread that limits libraries to one thread, because it also restores the setting."""
+"""Lock that is held while libraries are limited to one thread, so that one thread only sets and restores the limit."""
 
 
 @contextmanager
 def single_threaded() -> Iterator[None]:
     """Limit all libraries of linear algebra to one thread in this context.
 
-    Afterwards each has as many threads as before; one that was loaded in the meantime has as many as the others.
+    Afterwards the previous numbers of threads are restored; a library that was loaded within the context receives the
+    largest of these numbers.
     """
     from threadpoolctl import ThreadpoolController
 

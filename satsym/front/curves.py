@@ -14,7 +14,7 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 ROUNDING = 1e-12
-"""Fraction of the duration by which a time may lie outside and still count as an end."""
+"""Fraction of the duration by which a time may lie outside the trajectory and still be moved to its end."""
 
 
 class Curve(np.lib.mixins.NDArrayOperatorsMixin):
@@ -52,16 +52,17 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
         self.names, self._between = tuple(names), between
 
     def __call__(self, t: ArrayLike) -> Any:
-        """Evaluate at a time, or at an array of times of any shape.
+        """Return the values at a time, or at an array of times of any shape.
 
         Returns
         -------
-        A float or array of the shape of `t`; of several quantities an array (k, ...).
+        float or array
+            Values in the shape of `t`; for several components an array of shape (k, ...).
 
         Raises
         ------
         BadInput
-            If there is no trajectory, or a time lies outside of it.
+            If there is no trajectory, or a time lies outside the trajectory.
         """
         if self._absent:
             raise BadInput(f"{self._what}: {self._absent}")

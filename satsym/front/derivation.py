@@ -39,11 +39,11 @@ class Equation:
     Attributes
     ----------
     address
-        ``model:step.equation``.
+        Address of the equation, ``model:step.equation``.
     lhs, rhs
-        The two sides, as sympy expressions; the right-hand side may be a matrix.
+        The two sides, as SymPy expressions; the right-hand side may be a matrix.
     latex
-        The equation in the notation of its derivation.
+        The equation in LaTeX, in the notation of its derivation.
     """
 
     address: str
@@ -84,7 +84,7 @@ class Derivation:
 
     @property
     def name(self) -> str:
-        """Return the name of the problem, or of the model where there is no cost."""
+        """Return the name of the problem, or of the model if there is no cost."""
         return self.derived.name
 
     @property
@@ -94,7 +94,7 @@ class Derivation:
 
     @cached_property
     def kernels(self) -> Kernels:
-        """Return the generated functions, compared with their expressions and kept in memory only."""
+        """Return the generated functions, which were compared with their expressions and are kept in memory only."""
         return self._generated[1]
 
     @cached_property
@@ -122,12 +122,12 @@ class Derivation:
         ----------
         address
             ``"step.equation"``, also with the model's name before it; ``"step"`` for all equations of a step, by name;
-            ``"step.A"`` for a matrix whose entries are equations; ``"declared.name"``.
+            ``"step.A"`` for a matrix whose entries are equations; ``"declared.name"`` for a declared quantity.
 
         Raises
         ------
         BadInput
-            If there is none, with what comes near.
+            If there is no such address; the message suggests similar addresses.
         """
         from satsym.symbolic import Equation as DerivedEquation
         from satsym.symbolic.lookup import addresses
@@ -169,7 +169,9 @@ class Derivation:
         return document.render(self.derived, language=lang, standalone=not fragment)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write ``NAME.py``, ``NAME.tex`` and ``NAME.derivation.json`` as ``satsym derive --out`` does; return paths.
+        """Write ``NAME.py``, ``NAME.tex`` and ``NAME.derivation.json`` as ``satsym derive --out`` does.
+
+        Return their paths.
 
         Raises
         ------
@@ -244,7 +246,13 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
         A problem or model; the name of a shipped one; or ``"FILE.py"``, followed by ``:NAME`` if the file defines
         several. The file is Python and is executed.
     convention
-        ``"minimum"`` or ``"maximum"``; by default the convention of the problem.
+        ``"minimum"`` or ``"maximum"``, the extremum of the Hamiltonian that the optimal control attains; by default the
+        convention of the problem.
+
+    Returns
+    -------
+    Derivation
+        The derived equations by address, with generated functions, LaTeX and HTML.
 
     Raises
     ------
@@ -271,7 +279,7 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
 
 
 _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
-"""Cached derivations by the complete statement, since tables in problems may have been changed."""
+"""Cached derivations, by the complete definition of the problem, since tables in problems may have been changed."""
 
 
 def _kept(subject: Problem | Model, source: str, path: Path | None, stating: Mapping[Path, str]) -> Derivation:

@@ -11,7 +11,10 @@ from satsym.report.terminal.table import figure
 
 
 def page(title: str, lines: Sequence[str], *tables: str) -> str:
-    """Return a title, paragraphs and tables; the title is not a heading, since its level is unknown in a notebook."""
+    """Return a title, paragraphs and tables.
+
+    The title is no heading, since the heading level in a notebook is unknown.
+    """
     paragraphs = [f"<p>{escape(line)}</p>" for line in lines if line]
     return "\n".join([f"<p><strong>{escape(title)}</strong></p>", *paragraphs, *filter(None, tables)])
 
@@ -35,7 +38,7 @@ def facts(values: Mapping[str, Any]) -> str:
 
 
 def _cell(text: str) -> str:
-    """Return an element with a text; numbers are not broken across lines, as browsers do after an exponent's sign."""
+    """Return a table cell with a text; numbers are not broken across lines, e.g. after the sign of an exponent."""
     try:
         float(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Instances made in Python, from the tables of an instance file, with the same checks and messages."""
+"""Instances created in Python from the tables of an instance file, with the same checks and messages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from satsym.symbolic import Model, Problem
 
 Table: TypeAlias = Mapping[Any, Any]
-"""A table by names or symbols, with numbers, or texts such as ``"5 km"``, ``"reference"``, ``"free"``."""
+"""A table of numbers or texts such as ``"5 km"``, ``"reference"``, ``"free"``, by names or symbols."""
 
 TIMES = ("tf", "t0", "tf_guess", "t0_guess")
 _NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
@@ -62,7 +62,7 @@ class Instance:
 
     @classmethod
     def of_written(cls, written: Written) -> Instance:
-        """Return the instance that these tables describe, after checking them."""
+        """Return the instance that the given tables describe, after checking them."""
         return cls(written, written.instance())
 
     @classmethod
@@ -186,7 +186,7 @@ class Instance:
 
 
 def as_case(given: Instance | str | Path) -> Instance:
-    """Return an instance for solvers, from an instance or from a name or path."""
+    """Return an instance from an instance, or from its name or path."""
     if isinstance(given, Instance):
         return given
     if isinstance(given, str | Path):
@@ -197,12 +197,12 @@ def as_case(given: Instance | str | Path) -> Instance:
 
 
 def _called(model: Any) -> str:
-    """Return the name of a model in tables."""
+    """Return the name by which the tables of an instance refer to a model."""
     return str(model) if isinstance(model, str | Path) else model.name
 
 
 def _kernels(model: Any) -> Kernels | None:
-    """Return the kernels of a model that is not given by name; ``None`` where it is."""
+    """Return the kernels of a model that is given as an object; ``None`` for a model that is given by name."""
     if isinstance(model, str | Path):
         return None
     from satsym.front.derivation import derive
@@ -214,7 +214,7 @@ def _kernels(model: Any) -> Kernels | None:
 
 
 def _checked(name: str) -> str:
-    """Return a name after a check that result files can have it."""
+    """Return a name after checking that result files can have this name."""
     if not isinstance(name, str) or not _NAME.match(name):
         raise BadInput(
             f"name: {shown(name)} is not a valid name of an instance; write letters, digits, hyphens and dots"

@@ -20,7 +20,7 @@ from satsym.report.terminal.proof import proof_text
 
 
 class Proof(record.Proof):
-    """A proof, or the point where the attempt ended."""
+    """A proof that a solution is a strict local minimum, or the point at which the attempt ended."""
 
     def to_json(self) -> str:
         """Return the JSON text that ``satsym prove --json`` prints."""
@@ -32,9 +32,9 @@ class Proof(record.Proof):
         Parameters
         ----------
         lang
-            Its language.
+            Language of the document.
         fragment
-            Whether the preamble is left out, for inclusion in another document.
+            Whether to leave out the preamble, for inclusion in another document.
         """
         from satsym.report.latex.proof import render
 
@@ -48,7 +48,7 @@ class Proof(record.Proof):
 
 
 def proved(case: Case, find: Callable[[], solution.Solution], digits: int) -> Proof:
-    """Prove the answer that a function finds for a case."""
+    """Prove that the solution that a function finds for an instance is a strict local minimum."""
     check_digits(digits)
     made = prove_found(case, find, digits)
     return Proof(**{f.name: getattr(made, f.name) for f in fields(made)})

@@ -37,7 +37,7 @@ class Pictures(Mapping[str, "Figure"]):
     Parameters
     ----------
     found
-        The result that they show.
+        The solution or simulation that the figures show.
     """
 
     def __init__(self, found: Solution | Simulation) -> None:
@@ -62,22 +62,22 @@ class Pictures(Mapping[str, "Figure"]):
         return len(self._figures)
 
     def contents(self, formats: Sequence[str] = ("png",)) -> dict[str, Content]:
-        """Map the name of each file to its content.
+        """Return the contents of the picture files by file name.
 
         Raises
         ------
         BadInput
-            For a format that is not known here.
+            If a format is not supported.
         """
         return plots.pictures(self._found, Look.of(formats))
 
     def save(self, folder: str | Path, formats: Sequence[str] = ("png",)) -> list[Path]:
-        """Write the pictures into a folder; return their paths.
+        """Write the pictures into a folder, and return their paths.
 
         Raises
         ------
         BadInput
-            If it cannot be written to.
+            If the folder cannot be written to.
         """
         place = Path(folder)
         check_writable(place)
@@ -119,9 +119,9 @@ class Result(ABC, Generic[Found]):
     Parameters
     ----------
     instance
-        What was solved or simulated.
+        The instance that was solved or simulated.
     found
-        The answer, as solvers hand it back.
+        The result in the form that solvers return.
     """
 
     instance: Instance
@@ -139,7 +139,7 @@ class Result(ABC, Generic[Found]):
 
     @property
     def message(self) -> str:
-        """Return one sentence for people, with advice where there is no answer."""
+        """Return one sentence that describes the result, with advice if there is no solution."""
         return self.status.explain(self.found.message)
 
     @property
@@ -155,7 +155,7 @@ class Result(ABC, Generic[Found]):
 
     @cached_property
     def u(self) -> Curve:
-        """Return the controls over time; at a jump, the values after it.
+        """Return the controls over time; at the time of a jump, the values after the jump.
 
         Optimal controls are computed from states and costates at each time.
         """
@@ -163,6 +163,11 @@ class Result(ABC, Generic[Found]):
 
     def plot(self, folder: str | Path | None = None, formats: Sequence[str] = ("png",)) -> Pictures:
         """Draw the pictures, which notebooks show; if a folder is given, write them into it.
+
+        Returns
+        -------
+        Pictures
+            The figures by name.
 
         Raises
         ------
@@ -175,7 +180,7 @@ class Result(ABC, Generic[Found]):
         return pictures
 
     def save(self, folder: str | Path, *, plot: bool = False) -> list[Path]:
-        """Write the files of ``--out`` (and ``--plot``) and the instance into a folder; return their paths.
+        """Write the files of ``--out`` (and ``--plot``) and the instance into a folder, and return their paths.
 
         An earlier result in the folder is replaced, either completely or not at all.
 

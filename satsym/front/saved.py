@@ -1,4 +1,4 @@
-"""Results in folders: writing and reading the files of the command line with the instance they belong to."""
+"""Results in folders: the files of the command line are written and read together with the instance of the result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ASKED = (
     *("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm", "norms"),
     *("lqr", "classical", "limits", "deadband"),
 )
-"""Fields of an instance that decide its results; options of solvers do not."""
+"""Fields of an instance that determine its results; options of solvers are not among them."""
 
 
 def save(
@@ -32,10 +32,10 @@ def save(
     folder: Path,
     pictures: Mapping[str, Content],
 ) -> list[Path]:
-    """Replace the result in a folder by this one, whole or not at all; return the files that were written.
+    """Replace the result in a folder, either completely or not at all, and return the paths of the written files.
 
-    They are those of ``satsym solve --out``, the instance as NAME.toml, and for a model that is not a shipped one its
-    generated module.
+    The files are those of ``satsym solve --out``, the instance as NAME.toml, and the generated module if the model is
+    not a shipped one.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def save(
 
 
 def origin(instance: Instance) -> dict[str, Content]:
-    """Return the files from which the instance can be read again."""
+    """Return the files from which the instance can be read again, by file name."""
     model, tree, place = instance.case.model, dict(instance.written.tree), f"{instance.name}.toml"
     if not may_hold(place):
         return {}
@@ -59,12 +59,12 @@ def origin(instance: Instance) -> dict[str, Content]:
 
 
 def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Simulation]:
-    """Return a saved result and its instance: the one given, the one saved with it, or the shipped one.
+    """Return a saved result and its instance: the given one, the one saved with the result, or the shipped one.
 
     Raises
     ------
     BadInput
-        If there is no whole result, or it is of another instance.
+        If the folder contains no complete result, or if the result belongs to another instance.
     """
     given = None if instance is None else as_case(instance)
     listed = sets.read(folder)
@@ -85,7 +85,10 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
 
 
 def _with(case: Instance, settings: Mapping[str, float]) -> Instance:
-    """Return an instance with the numbers that were set on the command line; a continuation of one ends there."""
+    """Return an instance with the values set on the command line.
+
+    A continuation in a key ends at the value of that key.
+    """
     changes: dict[str, dict[str, Any]] = {}
     for name, value in settings.items():
         key = find(name, case.case)

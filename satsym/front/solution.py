@@ -1,4 +1,4 @@
-"""Solutions in Python."""
+"""Solutions of optimal control problems in Python."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def certificate(self) -> Certificate | None:
-        """Return the certificate of the solution, if there is one."""
+        """Return the certificate of the solution, or ``None`` if there is none."""
         return self.found.certificate
 
     @property
@@ -53,7 +53,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Return entries, exits and touch points of path constraints, and points on the way, in order of time."""
+        """Return the entries, exits and touch points of path constraints, and interior points, in order of time."""
         return self.found.events
 
     @property
@@ -132,7 +132,7 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
     instance
         An instance, or the name or path of one, which is then loaded.
     progress
-        Called after each iteration.
+        Function that is called after each iteration.
     options
         Options of the table [solver], which override those of the instance: ``method``, ``steps``, ``tolerance``,
         ``max_seconds``, ...

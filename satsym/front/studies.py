@@ -33,7 +33,7 @@ Said = Mapping[str, str | Sequence[float]]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study:
-    """A study that was carried out, with its table.
+    """A completed study with its table of results.
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ class Study:
 
     @cached_property
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Return the table by column name, without units: numbers (NaN where there is none), or texts."""
+        """Return the columns of the table by name, without units: numbers (NaN for missing values), or texts."""
         return columns(path_of(self.folder))
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
 
     def plot(self, formats: str | Sequence[str] = "png", titled: bool = True) -> list[Path]:
-        """Draw the pictures into the study's folder, and return them."""
+        """Draw the pictures into the study's folder, and return their paths."""
         return draw(self.folder, Look.of(formats, titled))[1]
 
     def to_json(self) -> str:
@@ -143,7 +143,7 @@ def study(
 
 
 def _said(given: Any, between: str) -> Any:
-    """Convert a value to the command line's form; a value of another kind is left to be refused."""
+    """Convert a value to the form of the command line; an unsuitable value is kept, so that it is refused later."""
     if isinstance(given, Mapping):
         return {name_of(key): _said(value, between) for key, value in given.items()}
     if isinstance(found := plain(given), list):

@@ -9,13 +9,13 @@ from datetime import datetime
 from typing import Any
 
 DEEPEST = 6
-"""Largest depth of lists and tables that is examined; no instance has more."""
+"""Largest depth of nested lists and tables that is converted; no instance has deeper ones."""
 
 
 def plain(value: Any, levels: int = DEEPEST) -> Any:
-    """Convert a value to TOML's types: numbers of any library, arrays, tuples, tables whose keys are symbols.
+    """Convert a value to the types of TOML: numbers of any library, arrays, tuples, tables whose keys are symbols.
 
-    Any other value is kept, to be refused with its key.
+    Any other value is kept, so that it is refused later with its key.
     """
     if value is None or isinstance(value, bool | str | bytes | datetime) or not levels:
         return value
@@ -49,14 +49,14 @@ def merged(tree: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
 
 def toml(tree: Mapping[str, Any], table: str = "") -> str:
-    """Return the text of an instance file with these tables.
+    """Return the text of an instance file with the given tables.
 
     Parameters
     ----------
     tree
         Texts, numbers, lists of them, and tables of these.
     table
-        Where they stand.
+        Name of the table that contains `tree`, empty for the whole file.
     """
     inner = {name: value for name, value in tree.items() if isinstance(value, Mapping)}
     lines = [f"{name} = {_written(value)}" for name, value in tree.items() if name not in inner]

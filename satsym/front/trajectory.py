@@ -17,7 +17,7 @@ from satsym.solution import Invariant, Simulation
 
 
 class Trajectory(Result[Simulation]):
-    """A simulated motion. The control law itself is not stored: between nodes, controls are interpolated."""
+    """A simulated motion. Controls between nodes are interpolated, since the control law itself is not stored."""
 
     _command: ClassVar[str] = "simulate"
 
@@ -65,7 +65,12 @@ def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Tr
         An instance, or the name or path of one, which is then loaded.
     feedback
         ``"none"``, ``"lqr"``, ``"classical"``, ``"switching"`` or ``"pulses"``; by default classical if the instance
-    specifies such a law, otherwise none.
+        specifies such a law, otherwise none.
+
+    Returns
+    -------
+    Trajectory
+        The simulated motion with its conserved quantities and metrics.
 
     Raises
     ------
