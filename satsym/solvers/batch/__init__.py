@@ -1,1 +1,1 @@
-"""Many instances of one problem solved and certified together, as columns of arrays."""
+"""Solution and certification of many instances of one problem at once, with one column of arrays for each instance."""

@@ -1,7 +1,8 @@
-"""Many problems whose controls meet their bounds: nodes of each lie where its controls come to a bound or leave it.
+"""Solution of many problems whose controls reach their bounds, with nodes where a control enters or leaves a bound.
 
-Between those times the canonical equations are smooth, and at them they have no jump: an error of such a time counts
-squared. So they are looked for along what is solved, and solved again with nodes there, until they stay.
+Between these times the canonical equations are smooth. The right-hand side is continuous at them, so that an error of
+such a time has only a quadratic effect. The times are located along the solution of the nodes, the nodes are solved
+again on a mesh that contains these times, and both steps are repeated until the times no longer change.
 """
 
 from __future__ import annotations
@@ -17,59 +18,65 @@ from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
 from satsym.solvers.batch.solving import aim_of
 
 INWARDS, NARROWEST, TRIALS = 0.5, 0.02, 12
-"""Share of what controls exceed their bounds by, by which these are moved inwards at first and at least, and how often.
+"""Parameters of the continuation in the bounds: first and smallest step, and largest number of steps.
+
+The steps are fractions of the amount by which the unbounded controls exceed their bounds.
 """
 
 AIMS = (1e-3, 1e-6, 1e-9)
-"""Errors that are aimed at while times at which bounds are met are not known well."""
+"""Tolerances that are used in turn while the times at which bounds are entered or left are still inaccurate."""
 
 SETTLED_TIMES = 1e-7
-"""Share of the duration by which these times may move in the end: the motion changes by its square."""
+"""Largest change of these times in the last iteration, as a fraction of the duration.
+
+The effect on the motion is proportional to the square of the change. A larger change makes the solution inaccurate.
+"""
 
 LOOKED_AT = (np.arange(8) + 0.5) / 8.0
-"""Places within each segment at which controls are compared with their bounds."""
+"""Positions within each segment, as fractions, at which controls are compared with their bounds."""
 
 MOST_TIMES = 24
-"""Times at which an instance meets or leaves a bound, at most."""
+"""Largest number of times at which an instance may enter or leave a bound."""
 
 POLISHED = 3
-"""Corrections of such a time along the motion."""
+"""Number of Newton corrections of such a time along the motion."""
 
 DIFFERENCE = 1e-6
-"""Share of the duration for a difference in time."""
+"""Step of finite differences in time, as a fraction of the duration."""
 
 
 @dataclass(frozen=True, eq=False)
 class Met:
-    """Times at which controls come to their bounds or leave them."""
+    """Times at which controls enter or leave their bounds."""
 
     times: Array
-    """In each instance's order, then infinite, shape (J, M)."""
+    """Times of each instance in increasing order, followed by infinity, shape (J, M)."""
     z: Array
-    """States and costates there, shape (2n, J, M)."""
+    """States and costates at these times, shape (2n, J, M)."""
     clear: NDArray[np.bool_]
-    """Whether there are no others beyond doubt, shape (M,)."""
+    """Whether further such times are clearly excluded, shape (M,)."""
 
     @property
     def counts(self) -> NDArray[np.intp]:
-        """How many, shape (M,)."""
+        """Number of such times for each instance, shape (M,)."""
         return np.asarray(np.isfinite(self.times).sum(axis=0))
 
 
 def within_bounds(many: Many, z: Array) -> tuple[Many, Nodes, NDArray[np.intp]]:
-    """Solve within bounds.
+    """Solve problems within the bounds on their controls.
 
     Parameters
     ----------
     many
         The problems.
     z
-        Nodes of their solutions without bounds, shape (2n, N+1, M).
+        Values at the nodes of their solutions without bounds, shape (2n, N+1, M).
 
     Returns
     -------
     tuple
-        The problems with nodes where bounds are met, the solutions, and how often they are met or left.
+        The problems on meshes with nodes where bounds are entered or left, their solutions, and the numbers of these
+        times.
     """
     own = many.within_bounds()
     with np.errstate(all="ignore"):
@@ -90,7 +97,7 @@ def within_bounds(many: Many, z: Array) -> tuple[Many, Nodes, NDArray[np.intp]]:
 
 
 def _eased(many: Many, z: Array) -> tuple[Array, NDArray[np.object_]]:
-    """Nodes by steps of low order, bounds being moved inwards from where they are not met."""
+    """Return nodes within gradually tightened bounds, by steps of low order, and the outcomes."""
     beyond = np.maximum(-_room(many, many.at_nodes(slice(None)), z.reshape(len(z), -1)), 0.0)
     beyond = np.where(np.isfinite(beyond), beyond, 0.0).reshape(len(beyond), -1, many.count).max(axis=1)
     left, width = np.ones(many.count), np.full(many.count, INWARDS)
@@ -109,7 +116,7 @@ def _eased(many: Many, z: Array) -> tuple[Array, NDArray[np.object_]]:
 
 
 def _moved_outwards(many: Many, by: Array) -> Many:
-    """The problems with their bounds moved outwards by so much, shape (b, M)."""
+    """Return the problems with their bounds moved outwards by given amounts, shape (b, M)."""
     if many.problem.control_set.kind == "ball":
         return replace(many, radius=many.radius + by[0])
     m = len(many.lower)
@@ -117,7 +124,7 @@ def _moved_outwards(many: Many, by: Array) -> Many:
 
 
 def _room(many: Many, t: Array, z: Array) -> Array:
-    """How far controls without bounds would be within these, a row for each bound, shape (b, K)."""
+    """Return the distance of the unbounded controls from each bound, negative outside, shape (b, K)."""
     n, times = many.states, len(t) // many.count
     free = many.instance.control_set.without_bounds.arguments
     (p, _), limits = many.arguments(times), np.tile(many.limits, times)
@@ -128,7 +135,7 @@ def _room(many: Many, t: Array, z: Array) -> Array:
 
 
 def _met(many: Many, z: Array) -> Met:
-    """Where along the motions from their nodes bounds are met or left."""
+    """Locate the times at which bounds are entered or left along the motions from the nodes."""
     t, start, h, given = many.segments(z)
     sides, when = [], []
     for share in LOOKED_AT:
@@ -159,7 +166,10 @@ def _met(many: Many, z: Array) -> Met:
 
 
 def _grazing(room: Array) -> bool:
-    """Whether a bound may be met or left for a moment between two places, of rooms there, shape (b, K)."""
+    """Return whether a bound may be reached for an instant between two sampled positions.
+
+    `room` are the distances from the bounds at these positions, shape (b, K).
+    """
     before, here, after = (np.abs(part) for part in (room[:, :-2], room[:, 1:-1], room[:, 2:]))
     within = room > 0.0
     one_side = (within[:, :-2] == within[:, 1:-1]) & (within[:, 2:] == within[:, 1:-1])
@@ -170,7 +180,7 @@ def _grazing(room: Array) -> bool:
 def _polished(
     many: Many, z: Array, which: NDArray[np.intp], row: NDArray[np.intp], t: Array, early: Array, late: Array
 ) -> tuple[Array, Array]:
-    """Times at which the room within a bound vanishes, between two others, and states and costates there."""
+    """Return the times between `early` and `late` at which a bound is reached, with states and costates there."""
     if not len(which):
         return t, np.zeros((len(z), 0))
     own, step = many.only(which), DIFFERENCE * many.problem.duration
@@ -190,7 +200,10 @@ def _polished(
 
 
 def _laid(many: Many, z: Array, met: Met) -> tuple[Many, Array, NDArray[np.intp]]:
-    """The problems with nodes where bounds are met as well, the nodes' values, and where the others are among them."""
+    """Return the problems on meshes with additional nodes where bounds are met, the values there, and the old nodes.
+
+    The old nodes are given as indices into the new meshes.
+    """
     first, lasting, count = many.instance.t0, many.problem.duration, many.count
     base = np.broadcast_to(many.mesh, (len(many.mesh), count))
     share = np.where(np.isfinite(met.times), (met.times - first) / lasting, 1.0)
@@ -202,7 +215,7 @@ def _laid(many: Many, z: Array, met: Met) -> tuple[Many, Array, NDArray[np.intp]
 
 
 def _separate(many: Many, z: Array) -> NDArray[np.bool_]:
-    """Whether H has no terms in which two controls meet, so that each is held by its own bounds alone, shape (M,)."""
+    """Return whether the Hamiltonian has no mixed terms in two controls, shape (M,); bounds then act independently."""
     if many.problem.control_set.kind == "ball" or len(many.lower) < 2:
         return np.ones(many.count, dtype=bool)
     n, (p, bounds), t = many.states, many.arguments(z.shape[1]), many.at_nodes(slice(None))

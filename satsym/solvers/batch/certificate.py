@@ -1,7 +1,7 @@
-"""The certificate of many extremals with given ends, but for competitors: those that are minima beyond doubt.
+"""Certificate of many extremals with given boundary values, except the comparison with competing extremals.
 
-The same conditions as of one solution, measured along flows from the initial costates and from every node to the next;
-what is not clear here is left to the certificate of one.
+The conditions are the same as for a single solution. They are evaluated along flows from the initial costates and from
+each node to the next. An extremal for which a condition is not clear is left to the certificate of single solutions.
 """
 
 from __future__ import annotations
@@ -31,56 +31,56 @@ from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap
 from satsym.status import Status, Verdict
 
 PARTS = (2, 4, 8)
-"""Into which segments are taken until errors of the flow are small enough."""
+"""Numbers of steps for each segment, tried in turn until the errors of the flow are small enough."""
 
 UNDRIVEN, VARIATIONS = 4, 5
-"""Columns of the extrapolation table, for the uncontrolled motion and for derivatives."""
+"""Numbers of columns of the extrapolation table for the uncontrolled motion, and for derivatives."""
 
 PLACES = 9
-"""At which it is looked whether kernels contradict each other."""
+"""Number of points at which kernels are tested for contradictions."""
 
 ROUGH = 0.01
-"""Relative error of derivatives that is small enough."""
+"""Largest relative error of the derivatives for which the corner test counts as clear."""
 
 FOLLOWED = 1e-4
-"""Largest error where phases are followed from segment to segment."""
+"""Largest relative error of the transition matrices for which phases are followed from segment to segment."""
 
 HALVINGS = 4
-"""Halvings of segments at most."""
+"""Largest number of times that segments are halved."""
 
 WHOLE = 0.9 * 2.0 * np.pi
-"""Turn of a phase in a segment: below a full turn, so that it has no conjugate point of its own."""
+"""Largest rotation of a phase within a segment, below a full turn, so that no segment has a conjugate point itself."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
-    """Sizes of states and costates, to which errors are held; from ``typical`` of the certificate's flow."""
+    """Reference magnitudes of states and costates for relative errors, as in ``typical`` of the certificate's flow."""
 
     state: Array
     largest: Array
-    """The largest magnitudes of states and of costates on the way, shapes (n, M)."""
+    """Largest magnitudes of states and costates along the motion, shapes (n, M)."""
     unit: Array
     """Units of the scaled problem, shape (2n, 1)."""
 
     @classmethod
     def of(cls, many: Many, z: Array) -> Sizes:
-        """The sizes of solutions."""
+        """Return the reference magnitudes of solutions with values z at the nodes."""
         n, unit, largest = many.states, many.units[:, None], np.abs(z).max(axis=1)
         return cls(np.maximum(largest[:n], NEGLIGIBLE * unit[:n]), largest[n:], unit)
 
     def costate(self, faint: float) -> Array:
-        """Sizes of costates, smaller ones counting at a share of their unit."""
+        """Return reference magnitudes of costates, which are at least the fraction `faint` of their unit."""
         product = (self.state * self.largest).max(axis=0)
         found = np.maximum(self.largest, faint * self.unit[len(self.state) :])
         return np.asarray(np.maximum(found, NEGLIGIBLE * product / self.state))
 
     def both(self, faint: float) -> Array:
-        """Sizes of states and costates, shape (2n, M)."""
+        """Return reference magnitudes of states and costates, shape (2n, M)."""
         return np.concatenate([self.state, self.costate(faint)])
 
 
 def minima(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
-    """Which are strict local minima beyond doubt, shape (M,): the verdict ``local minimum``."""
+    """Return which extremals are clearly strict local minima (verdict ``local minimum``), shape (M,)."""
     found = np.zeros(many.count, dtype=bool)
     chosen = np.flatnonzero(nodes.solved)
     if not len(chosen):
@@ -98,7 +98,10 @@ def minima(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
 
 
 def _along_flow(many: Many, z: Array, cost: Array, sizes: Sizes) -> NDArray[np.bool_]:
-    """Whether the flow from the initial costates leads through the nodes to the end, at the cost stated, H constant."""
+    """Return whether the flow from the initial costates passes the nodes and ends correctly, with constant H.
+
+    The integral of the running cost must also agree with the stated cost.
+    """
     n, faint = many.states, sizes.both(FAINT_COSTATE)
     scale = np.concatenate([faint, (faint[:n] * faint[n:]).sum(axis=0)[None]])
     start = np.concatenate([many.initial, z[n:, 0], np.zeros((1, many.count))])
@@ -122,7 +125,7 @@ def _along_flow(many: Many, z: Array, cost: Array, sizes: Sizes) -> NDArray[np.b
 
 
 def _flow(many: Many, start: Array, scale: Array, parts: int) -> tuple[Array, Array]:
-    """Values at the ends of parts of segments, shape (K, 2n + 1, M), and the largest relative error, shape (M,)."""
+    """Return values at the ends of parts of segments, shape (K, 2n + 1, M), and the largest relative error, (M,)."""
     values, now, worst = [start], start, np.zeros(many.count)
     for begin, width in zip(many.times[:-1], np.diff(many.times, axis=0), strict=True):
         h = np.zeros(many.count) + width / parts
@@ -134,7 +137,7 @@ def _flow(many: Many, start: Array, scale: Array, parts: int) -> tuple[Array, Ar
 
 
 def _undriven(many: Many, sizes: Sizes) -> Array:
-    """Where each motion would end without control, roughly, shape (n, M)."""
+    """Return approximate final states of the motions without control, shape (n, M)."""
     model, p = many.instance.model, tuple(many.parameters)
     none, now = np.zeros((len(model.spec.controls), many.count)), many.initial
     times = np.concatenate([many.times[:-1:2], many.times[-1:]])  # only its size matters
@@ -146,7 +149,10 @@ def _undriven(many: Many, sizes: Sizes) -> Array:
 
 
 def _drift(many: Many, stations: Array) -> Array:
-    """Largest change of H at stations, shape (K, 2n, M), relative to its terms; zero with explicit time."""
+    """Return the largest change of the Hamiltonian along stations (K, 2n, M), relative to its terms.
+
+    Zero if H depends on t.
+    """
     if not many.instance.model.spec.autonomous:
         return np.zeros(many.count)
     n, model = many.states, many.instance.model
@@ -158,7 +164,7 @@ def _drift(many: Many, stations: Array) -> Array:
 
 
 def _flat(many: Many, z: Array) -> tuple[Array, Array, Array, Array, tuple[Array, ...]]:
-    """Times, states, costates, controls by the law and parameters at all nodes, a column for each."""
+    """Return times, states, costates, controls by the control law, and parameters at all nodes, one column for each."""
     n, count = many.states, z.shape[1]
     flat, t = z.reshape(len(z), -1), many.at_nodes(slice(None))
     p, bounds = many.arguments(count)
@@ -167,7 +173,7 @@ def _flat(many: Many, z: Array) -> tuple[Array, Array, Array, Array, tuple[Array
 
 
 def _from_nodes(many: Many, z: Array, sizes: Sizes) -> NDArray[np.bool_]:
-    """Whether the canonical equations, begun at each node, lead to the next one."""
+    """Return whether the canonical equations lead from each node to the next one."""
     t, start, h, p = many.segments(z)
     ends, scale = (
         np.ascontiguousarray(z[:, 1:]).reshape(len(z), -1),
@@ -185,7 +191,7 @@ def _from_nodes(many: Many, z: Array, sizes: Sizes) -> NDArray[np.bool_]:
 
 
 def _stationary(many: Many, z: Array) -> NDArray[np.bool_]:
-    """Whether H is stationary in the controls of the law at all nodes, and has its strict minimum there."""
+    """Return whether the Hamiltonian is stationary in the controls at all nodes, with a strict minimum."""
     t, x, lam, u, p = _flat(many, z)
     model, m = many.instance.model, len(u)
     slope = np.asarray(model.stationarity_batch(t, x, u, lam, p)).reshape(m, -1, many.count)
@@ -199,7 +205,10 @@ def _stationary(many: Many, z: Array) -> NDArray[np.bool_]:
 
 
 def _uphill(many: Many, u: Array, slope: Array, hessian: Array) -> Array:
-    """What is left of slopes of H, shape (m, N+1, M), where they lead out of the bounds that hold controls."""
+    """Return the projected gradient of H with respect to the controls, shape (m, N+1, M), which vanishes at a minimum.
+
+    Components that point out of the bounds of active controls are removed.
+    """
     steepness = np.maximum(np.einsum("iikm->km", np.abs(hessian)), 1e-300)
     moved = u - slope / steepness
     if many.problem.control_set.kind == "ball":
@@ -210,7 +219,7 @@ def _uphill(many: Many, u: Array, slope: Array, hessian: Array) -> Array:
 
 
 def _without_conjugate_points(many: Many, z: Array, halvings: int = HALVINGS) -> NDArray[np.bool_]:
-    """Which have none beyond doubt; segments in which a phase may turn by too much are halved."""
+    """Return which extremals clearly have no conjugate point; segments with a large rotation of phases are halved."""
     scale = _balanced(many, z)
     if many.bounded:
         free = replace(many, bounded=False)  # where a bound is met rates change, at most to what they are without
@@ -227,7 +236,7 @@ def _without_conjugate_points(many: Many, z: Array, halvings: int = HALVINGS) ->
 
 
 def _halved(many: Many, z: Array) -> tuple[Many, Array]:
-    """The problems on a mesh with twice as many segments, and the values at its nodes."""
+    """Return the problems on a mesh with twice as many segments, and the values at its nodes."""
     t, start, h, p = many.segments(z)
     costing = np.concatenate([start, np.zeros((1, len(t)))])
     middles = many.motion.leap(t, costing, h / 2.0, p, len(SUBSTEPS))[0][:-1]
@@ -239,7 +248,7 @@ def _halved(many: Many, z: Array) -> tuple[Many, Array]:
 
 
 def _varied(many: Many, z: Array, scale: Array) -> tuple[Array, Array]:
-    """How segments' ends follow their beginnings, and the errors of that, shapes (2n, 2n, N, M)."""
+    """Return the transition matrices of the segments, and their errors, shapes (2n, 2n, N, M)."""
     rows, ratio = len(z), (scale / scale[:, None])[:, :, None, None]
     _, transition, off = many.motion.leap_varied(*many.segments(z), VARIATIONS)
     whole, wrong = (one.reshape(rows, rows, -1, many.count) * ratio for one in (transition, off))
@@ -247,7 +256,7 @@ def _varied(many: Many, z: Array, scale: Array) -> tuple[Array, Array]:
 
 
 def _phases_clear(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
-    """Whether no phase comes near a full turn: where all controls are held no broken extremal tells anything."""
+    """Return whether no phase comes near a full turn; used where controls are at bounds and the corner test fails."""
     whole, wrong = _varied(many, z, scale)
     found = np.asarray(wrong.max(axis=(0, 1, 2)) <= FOLLOWED * np.abs(whole).max(axis=(0, 1, 2)))
     for k in np.flatnonzero(found):
@@ -257,7 +266,7 @@ def _phases_clear(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
 
 
 def _corners_positive(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
-    """Whether broken extremals with corners at the nodes cost more, beyond doubt."""
+    """Return whether broken extremals with corners at the nodes clearly cost more."""
     n, (whole, wrong) = many.states, _varied(many, z, scale)
     across, doubt = (one[:n, n:].transpose(3, 2, 0, 1) for one in (whole, wrong))
     inverse = inverses(across)
@@ -266,29 +275,29 @@ def _corners_positive(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
 
 
 def _balanced(many: Many, z: Array) -> Array:
-    """Units in which transitions are symplectic and extremals turn slowly; those of the first solution do for all."""
+    """Return units, from the first solution, in which transition matrices are symplectic and phases rotate slowly."""
     first = many.only(np.arange(1))
     return balanced(many.units, np.abs(_slopes(first, z[:, :, :1])).max(axis=(2, 3)), many.problem.duration)
 
 
 def _slopes(many: Many, z: Array) -> Array:
-    """The canonical rates by states and costates at nodes, shape (2n, 2n, N+1, M)."""
+    """Return the Jacobians of the canonical equations at the nodes, shape (2n, 2n, N+1, M)."""
     t, x, lam, _, p = _flat(many, z)
     table = many.instance.model.canonical_jacobian_batch(t, x, lam, p, many.arguments(z.shape[1])[1])
     return np.asarray(table).reshape(len(z), len(z), -1, many.count)
 
 
 def _turning(many: Many, z: Array, scale: Array) -> Array:
-    """The most that a phase may turn in a segment, shape (M,)."""
+    """Return an upper bound of the rotation of phases within a segment, shape (M,)."""
     slopes = _slopes(many, z) * (scale / scale[:, None])[:, :, None, None]
     rates = 2.0 * np.sqrt(np.einsum("ijkm,ijkm->km", slopes, slopes))
     return np.asarray((np.maximum(rates[1:], rates[:-1]) * np.diff(many.times, axis=0)).max(axis=0))
 
 
 def _kernels_agree(problem: TwoPoint) -> bool:
-    """Whether the kernels do not contradict each other, near the line from start to end.
+    """Return whether the kernels of a model agree with each other near the line from initial to final state.
 
-    Found out once, for kernels that do so do it everywhere.
+    The result is computed once for each model, because contradicting kernels contradict each other everywhere.
     """
     model = problem.instance.model
     if model not in _AGREE:
@@ -305,4 +314,4 @@ def _kernels_agree(problem: TwoPoint) -> bool:
 
 
 _AGREE: WeakKeyDictionary[Kernels, bool] = WeakKeyDictionary()
-"""What was found out."""
+"""Model -> whether its kernels agree with each other."""

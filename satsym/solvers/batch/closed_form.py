@@ -1,6 +1,7 @@
-"""Many linear problems in closed form: initial costates by the Gramian that all of them share, nodes by exponentials.
+"""Closed-form solution of many linear problems, by their common Gramian and matrix exponentials.
 
-As :mod:`satsym.solvers.linear` has it for one. What does not come out to rounding is left to shooting.
+See :mod:`satsym.solvers.linear` for a single problem. Problems that are not solved to rounding errors are left to
+shooting.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ from satsym.solvers.linear import Exponential, is_linear
 from satsym.status import BadInput
 
 POINTS = 8
-"""At which the running cost is taken on each segment: what these leave out is below rounding."""
+"""Number of quadrature points of the running cost on each segment, for which the quadrature error is below rounding."""
 
 
 def applies(many: Many) -> bool:
-    """Whether the canonical equations are linear, do not know the time, and are the same for all problems."""
+    """Return whether the canonical equations are linear, autonomous, and the same for all problems."""
     same = not np.ptp(many.parameters, axis=1).any() if len(many.parameters) else True
     if not (same and many.instance.model.spec.autonomous) or many.instance.parameters != tuple(many.parameters[:, 0]):
         return False
@@ -30,7 +31,7 @@ def applies(many: Many) -> bool:
 
 
 def solved(many: Many) -> Nodes:
-    """All problems, to each of which :func:`applies`."""
+    """Return the solutions of problems to which :func:`applies`."""
     n, rows, count = many.states, 2 * many.states, many.count
     mesh = many.mesh[:, 0]
     arcs = Exponential(many.problem, mesh, np.ones((rows, len(mesh))), many.problem.theta)
@@ -65,7 +66,7 @@ def solved(many: Many) -> Nodes:
 
 
 def _cost(many: Many, z: Array, weights: Array, shares: Array) -> Array:
-    """The running cost, of values at points of all segments, shape (K, 2n, M)."""
+    """Return the integral of the running cost from values at quadrature points of all segments, shape (K, 2n, M)."""
     n, model, p = many.states, many.instance.model, many.instance.parameters
     flat = z.transpose(1, 0, 2).reshape(2 * n, -1)
     t = np.repeat(many.instance.t0 + many.problem.duration * (many.mesh[:-1] + shares).ravel(), many.count)

@@ -1,4 +1,4 @@
-"""How nodes follow from the first one, segment by segment, for many problems: compiled, or on arrays."""
+"""Condensing for many problems: nodes are expressed by the first node, in compiled code or by NumPy."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from satsym.kernels.batch.workspace import (
 
 
 class Condensing(Protocol):
-    """Takes transitions of shape (2n, 2n, N, M)."""
+    """Function that propagates columns through transition matrices of shape (2n, 2n, N, M)."""
 
     def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
-        """Columns at all nodes, shape (2n, c, N+1, M), from those at the first, (2n, c, M).
+        """Return columns at all nodes, shape (2n, c, N+1, M), from those at the first node, shape (2n, c, M).
 
         Gaps of shape (2n, N, M) are added to the last column at the end of each segment.
         """
 
     def combine(self, columns: Array, weights: Array, found: Array) -> None:
-        """Add weights (k, M) of the first k columns at all nodes, shape (2n, c, N+1, M), to others, (2n, N+1, M)."""
+        """Add the first k columns (2n, c, N+1, M), times weights (k, M), to `found`, shape (2n, N+1, M), in place."""
 
 
 @lru_cache(maxsize=16)
 def condensing(states: int, compiled: bool) -> Condensing:
-    """For so many states."""
+    """Return the condensing function for a number of states."""
     return _Compiled(2 * states) if compiled else _OnArrays()
 
 
@@ -61,7 +61,7 @@ class _OnArrays:
 
 
 class _Compiled:
-    """Condensing by machine code."""
+    """Condensing by compiled code."""
 
     def __init__(self, rows: int) -> None:
         name = f"condensing_{rows}"
@@ -92,7 +92,7 @@ class _Compiled:
 
 
 def text(rows: int) -> str:
-    """The module that is compiled for so many rows; columns come one after the other."""
+    """Return the source of the compiled module for a number of rows; columns are processed one after the other."""
     own = Workspace()
     slopes, now, after, added = (
         own.place(name, size)

@@ -1,9 +1,10 @@
-"""Jacobi's condition of many extremals at once, by the cost of broken ones with corners at their nodes.
+"""Jacobi's condition for many extremals at once, from the cost of broken extremals with corners at their nodes.
 
-With (x, lambda) -> (A x + B lambda, C x + D lambda) over a segment, its cost has the derivatives lambda by where it
-begins, and -lambda by where it ends: by both ends -B^-1 A, -D B^-1, and B^-1 across. If no segment has a conjugate
-point of its own, the second derivatives by all corners, a matrix with three block diagonals, are positive definite if
-and only if the whole has none (Morse, The calculus of variations in the large, 1934, III).
+If the transition matrix of a segment is (x, lambda) -> (A x + B lambda, C x + D lambda), the second derivatives of its
+cost with respect to its end points are -B^-1 A and -D B^-1, with the mixed derivative B^-1. If no segment has a
+conjugate point of its own, the block-tridiagonal matrix of the second derivatives with respect to all corners is
+positive definite if and only if the whole extremal has no conjugate point (Morse, The calculus of variations in the
+large, 1934, III).
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 
 CLEAR_PIVOT = 1e-3
-"""Least pivot of what the nodes before one leave of the second derivatives there, in units of the square roots of
-these, that is positive beyond doubt."""
+"""Smallest pivot in the factorisation of the second derivatives that counts as clearly positive.
+
+Pivots refer to the matrix scaled to a unit diagonal. A smaller pivot leaves the extremal to a closer examination.
+"""
 
 
 def inverses(matrices: Array) -> Array:
-    """Inverses of a stack of matrices; without numbers where one is singular."""
+    """Return the inverses of a stack of matrices; NaN for singular matrices."""
     try:
         return np.asarray(np.linalg.inv(matrices))
     except np.linalg.LinAlgError:
@@ -30,14 +33,14 @@ def inverses(matrices: Array) -> Array:
 
 
 def positive(transition: Array, inverse: Array | None = None) -> NDArray[np.bool_]:
-    """Whether the second derivatives of the cost by the corners are positive definite beyond doubt, shape (M,).
+    """Return whether the second derivatives with respect to the corners are clearly positive definite, shape (M,).
 
     Parameters
     ----------
     transition
-        Shape (2n, 2n, N, M), in units in which it is symplectic.
+        Transition matrices of the segments, shape (2n, 2n, N, M), in units in which they are symplectic.
     inverse
-        B^-1, shape (M, N, n, n), if that is known.
+        The inverses B^-1, shape (M, N, n, n), if they are known.
     """
     n = len(transition) // 2
     stack = transition.transpose(3, 2, 0, 1)
@@ -61,7 +64,7 @@ def positive(transition: Array, inverse: Array | None = None) -> NDArray[np.bool
 
 
 def _eliminated(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Pivots of symmetric matrices, shape (n, M), and R' A^-1 R of these and right-hand sides R, shape (n, c, M)."""
+    """Return pivots of symmetric matrices A, shape (n, M), and R' A^-1 R for right-hand sides R, shape (n, c, M)."""
     matrix, right, pivots = matrix.copy(), right.copy(), np.empty(matrix.shape[1:])
     taken = np.zeros((right.shape[1], *right.shape[1:]))
     for k in range(len(matrix)):

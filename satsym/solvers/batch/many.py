@@ -1,4 +1,4 @@
-"""Instances of one problem that differ in initial states, ends and parameters, as columns."""
+"""Instances of one problem that differ in initial states, final states and parameters, as columns of arrays."""
 
 from __future__ import annotations
 
@@ -20,36 +20,36 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import final_argument, two_point
 
 FINER = 2
-"""Segments for each interval that the motion's fastest mode asks for, while steps are of low order."""
+"""Number of segments for each time scale of the fastest mode, while steps are of low order."""
 
 
 @dataclass(frozen=True, eq=False)
 class Many:
-    """M instances whose ends and times are given."""
+    """M instances of one problem with given boundary values and times."""
 
     problem: TwoPoint
-    """The instance that they vary as a two-point problem: scales, times and what else all share."""
+    """The common instance as a two-point boundary value problem, with its scales and times."""
     motion: Motion
-    """Steps of the canonical equations."""
+    """Integrator of the canonical equations."""
     initial: Array
     end: Array
-    """States where the motions begin and end, shape (n, M)."""
+    """Initial and final states, shape (n, M)."""
     parameters: Array
-    """Shape (k, M)."""
+    """Parameters, shape (k, M)."""
     mesh: Array
-    """Nodes in [0, 1], shape (N+1, M), or (N+1, 1) where they are the same for all."""
+    """Nodes in [0, 1], shape (N+1, M), or (N+1, 1) if they are the same for all instances."""
     condense: Condensing
-    """How nodes follow from the first one."""
+    """Function that expresses all nodes by the first node."""
     lower: Array
     upper: Array
     radius: Array
-    """Bounds on controls, shapes (m, M), and on their norm, shape (M,), by which solutions are judged."""
+    """Bounds on controls, shapes (m, M), and on their norm, shape (M,), within which solutions must be."""
     bounded: bool = False
-    """Whether controls are held within them; otherwise all are solved as if there were none."""
+    """Whether controls are limited by these bounds; otherwise the problems are solved as if there were none."""
 
     @classmethod
     def of(cls, instance: Instance, instances: Sequence[Instance], compiled: bool) -> Many:
-        """Variations of an instance."""
+        """Return the problems of instances that vary boundary values, parameters or bounds of a common instance."""
         assert instance.tf is not None
         problem = two_point(instance, instance.tf - instance.t0).relaxed(float("inf"))
         path = paths.first(problem)
@@ -71,7 +71,7 @@ class Many:
 
     @property
     def instance(self) -> Instance:
-        """The one that is varied."""
+        """The common instance that is varied."""
         return self.problem.instance
 
     @property
@@ -96,13 +96,13 @@ class Many:
 
     @property
     def line(self) -> Array:
-        """The straight line between the ends without costates, at the nodes, shape (2n, N+1, M)."""
+        """Straight line between initial and final states, with zero costates, at the nodes, shape (2n, N+1, M)."""
         found = np.zeros((2 * self.states, len(self.mesh), self.count))
         found[: self.states] = self.initial[:, None] + (self.end - self.initial)[:, None] * self.mesh
         return found
 
     def only(self, chosen: NDArray[np.intp]) -> Many:
-        """Some of the problems."""
+        """Return the problems with the given indices."""
         if len(chosen) == self.count:
             return self
         columns: dict[str, Any] = {
@@ -113,52 +113,55 @@ class Many:
         return replace(self, **columns, mesh=mesh)
 
     def within_bounds(self) -> Many:
-        """The instances with their bounds, on arrays: few meet them as a rule."""
+        """Return the problems with their bounds, integrated by NumPy, since usually only few problems reach bounds."""
         return replace(self, bounded=True, motion=motion(self.instance.model, None, False))
 
     @property
     def limits(self) -> Array:
-        """What generated functions have as bounds, shape (b, M)."""
+        """Bounds in the form of generated functions, shape (b, M)."""
         if self.problem.control_set.kind == "ball":
             return self.radius[None]
         return np.concatenate([self.lower, self.upper])
 
     @property
     def given(self) -> Array:
-        """Parameters, and bounds where there are any: what motions take, shape (k, M) or (k + b, M)."""
+        """Rows that integrators receive: the parameters, and the bounds if controls are limited.
+
+        Shape (k, M) or (k + b, M).
+        """
         return np.concatenate([self.parameters, self.limits]) if self.bounded else self.parameters
 
     def arguments(self, times: int) -> tuple[tuple[Array, ...], tuple[Any, ...]]:
-        """Parameters and bounds of generated functions, so many times one after the other."""
+        """Return parameters and bounds as arguments of generated functions, repeated for a number of times."""
         bounds = tuple(np.tile(self.limits, times)) if self.bounded else self.problem.control_set.arguments
         return tuple(np.tile(self.parameters, times)), bounds
 
     def at_nodes(self, nodes: slice) -> Array:
-        """Times of nodes, a column for each of each instance."""
+        """Return the times of some nodes, one column for each node of each instance."""
         times = self.times[nodes]
         return np.broadcast_to(times, (len(times), self.count)).ravel()
 
     def segments(self, z: Array) -> tuple[Array, Array, Array, Array]:
-        """Arguments of steps over all segments, a column for each of each instance.
+        """Return the arguments for integrating over all segments, one column for each segment of each instance.
 
         Parameters
         ----------
         z
-            Nodes, shape (2n, N+1, M).
+            Values at the nodes, shape (2n, N+1, M).
         """
         begins, lasting, given = self._segments
         return begins, np.ascontiguousarray(z[:, :-1]).reshape(len(z), -1), lasting, given
 
     @cached_property
     def _segments(self) -> tuple[Array, Array, Array]:
-        """When they begin, how long they last, and what is given in each."""
+        """Initial times and lengths of the segments, and parameters (and bounds) in each."""
         given = np.ascontiguousarray(np.tile(self.given, len(self.times) - 1))
         begins, ends = self.at_nodes(slice(None, -1)), self.at_nodes(slice(1, None))
         return begins, ends - begins, given
 
 
 def _ends(instances: Sequence[Instance], parameters: Array) -> Array:
-    """Where motions should end, shape (n, M)."""
+    """Return the required final states, shape (n, M)."""
     first, tf = instances[0], instances[0].tf
     assert tf is not None
     same = all(one.final is first.final for one in instances)

@@ -1,4 +1,4 @@
-"""Steps of the canonical equations for many columns at once: compiled, or on arrays."""
+"""Integration of the canonical equations for many columns at once, compiled or by NumPy."""
 
 from __future__ import annotations
 
@@ -15,47 +15,48 @@ from satsym.solvers.shooting.runge_kutta import tableau
 from satsym.solvers.simulation.extrapolation import leap_and_error
 
 BLOCK = 1024
-"""Columns that NumPy is given at a time: so many rows of them stay in the processor's cache."""
+"""Number of columns that NumPy processes at a time, so that the arrays fit into the processor's cache."""
 
 
 class Motion(Protocol):
-    """Takes times t and steps h of shape (K,), states and costates z (2n, K) and parameters p (k, K).
+    """Integrator with arguments t and step h of shape (K,), states and costates z (2n, K), and parameters p (k, K).
 
-    What comes back is relative to the step's end: states and costates there, the running cost over the step where that
-    is asked for, and how the former follow the beginning, shape (2n, 2n, K).
+    Results refer to the end of the step: states and costates, the integral of the running cost if requested, and the
+    derivatives with respect to the initial values, shape (2n, 2n, K).
     """
 
     def rough(self, t: Array, z: Array, h: Array, p: Array, parts: int) -> tuple[Array, Array]:
-        """Steps of order four, so many: the end, shape (2n, K), and how it follows the beginning."""
+        """Return the final values, shape (2n, K), after `parts` steps of order four, and their derivatives."""
 
     def accurate(self, t: Array, z: Array, h: Array, p: Array, parts: int) -> Array:
-        """Steps of order eight, so many: the end and the cost, shape (2n + 1, K)."""
+        """Return the final values and the cost, shape (2n + 1, K), after `parts` steps of order eight."""
 
     def leap(self, t: Array, z: Array, h: Array, p: Array, columns: int) -> tuple[Array, Array]:
-        """An extrapolated step and its errors; with the cost so far among the rows, shapes (2n + 1, K)."""
+        """Return the result and errors of one extrapolated step, shapes (2n + 1, K), with the cost in the last row."""
 
     def leap_varied(self, t: Array, z: Array, h: Array, p: Array, columns: int) -> tuple[Array, Array, Array]:
-        """An extrapolated step, how its end follows its beginning, and the errors of the latter."""
+        """Return the result of one extrapolated step, its derivatives, and the errors of the derivatives."""
 
 
 @lru_cache(maxsize=16)
 def motion(kernels: Kernels, bounds: tuple[float, ...] | None, compiled: bool) -> Motion:
-    """Steps of a model.
+    """Return the integrator of a model.
 
     Parameters
     ----------
     kernels
         The model.
     bounds
-        The argument of its functions; ``None`` where they follow the parameters as rows, which is on arrays alone.
+        Bounds as an argument of the model's functions; ``None`` if bounds follow the parameters as rows, which only the
+        NumPy integrator supports.
     compiled
-        Whether by machine code; making that takes half a minute, once a model.
+        Whether to use compiled code; compilation takes half a minute, once for each model.
     """
     return _Compiled(kernels, bounds) if compiled and bounds is not None else _OnArrays(kernels, bounds)
 
 
 class _Compiled:
-    """Steps of extremals by machine code."""
+    """Integrator of extremals by compiled code."""
 
     def __init__(self, kernels: Kernels, bounds: tuple[float, ...]) -> None:
         a, b, c = tableau()
@@ -67,7 +68,7 @@ class _Compiled:
             self._call_each(len(kernels.spec.parameters))
 
     def _call_each(self, parameters: int) -> None:
-        """So that all is compiled, or read."""
+        """Call each function once, so that all of them are compiled or read from the cache."""
         one, z, p = np.ones(1), np.ones((self._rows, 1)), np.ones((parameters, 1))
         self.rough(one, z, one, p, 1)
         self.accurate(one, z, one, p, 1)
@@ -99,28 +100,28 @@ class _Compiled:
 
 
 def _costing(z: Array) -> Array:
-    """Add to states and costates a row for the accumulated cost, which starts at zero."""
+    """Return states and costates with an additional row for the accumulated cost, which starts at zero."""
     return np.concatenate([z, np.zeros((1, z.shape[1]))])
 
 
 class _OnArrays:
-    """Steps of extremals by the batch forms, block by block."""
+    """Integrator of extremals by the batch form of kernels, in blocks of columns."""
 
     def __init__(self, kernels: Kernels, bounds: tuple[float, ...] | None) -> None:
         self._kernels, self._bounds, self._n = kernels, bounds, len(kernels.spec.states)
 
     def _arguments(self, p: Array) -> tuple[tuple[Array, ...], tuple[Any, ...]]:
-        """Parameters and bounds."""
+        """Return parameters and bounds from the rows of p."""
         count = len(self._kernels.spec.parameters)
         return tuple(p[:count]), tuple(p[count:]) if self._bounds is None else self._bounds
 
     def _rates(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Rates of states and costates."""
+        """Return the right-hand side of states and costates."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         return lambda t, z: np.asarray(model.canonical_batch(t, z[:n], z[n:], own, bounds))
 
     def _costing(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Rates of states, costates and the cost."""
+        """Return the right-hand side of states, costates and cost."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
 
         def rates(t: Any, y: Array) -> Array:
@@ -132,7 +133,7 @@ class _OnArrays:
         return rates
 
     def _varied(self, p: Array) -> Callable[[Any, Array], Array]:
-        """Rates of states, costates and their derivatives by the start."""
+        """Return the right-hand side of states, costates and their derivatives with respect to the initial values."""
         model, n, (own, bounds) = self._kernels, self._n, self._arguments(p)
         rows = 2 * n
 
@@ -149,7 +150,10 @@ class _OnArrays:
 
     @staticmethod
     def _row(slopes: Array, given: Array, out: Array) -> None:
-        """A row of a product of matrices; most entries of slopes are zero in all columns."""
+        """Compute one row of a product of matrices, in place.
+
+        Entries of `slopes` that are zero in all columns are skipped.
+        """
         out[:] = 0.0
         for k, slope in enumerate(slopes):
             if slope.any():
@@ -197,7 +201,7 @@ def _unity(rows: int, count: int) -> Array:
 
 
 def _classical(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array) -> Array:
-    """A step of the classical Runge-Kutta method."""
+    """Return the result of one step of the classical Runge-Kutta method."""
     one = rates(t, y)
     two = rates(t + h / 2.0, y + (h / 2.0) * one)
     three = rates(t + h / 2.0, y + (h / 2.0) * two)
@@ -206,7 +210,7 @@ def _classical(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Arra
 
 
 def _eighth(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array) -> Array:
-    """A step of the method by Dormand and Prince, without what its table has no weights for."""
+    """Return the result of one step of order eight by Dormand and Prince, without stages of zero weight."""
     a, b, c = tableau()
     stages: list[Array] = []
     for i, row in enumerate(a):

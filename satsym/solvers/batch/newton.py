@@ -1,7 +1,7 @@
-"""Newton's method on the nodes of many shooting problems; each problem leaves when it is done, or led nowhere.
+"""Newton's method for the nodes of many shooting problems; each problem is removed when it has converged or failed.
 
-First with steps of low order and their exact derivatives; then, with these derivatives as they were last, on steps of
-high order, whose error Richardson's rule estimates from twice as many.
+Steps of low order with exact derivatives are used first. Steps of high order follow, with the last of these derivatives
+held fixed; their error is estimated by Richardson's rule from twice as many steps.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from satsym.solvers.collocation.curve import SMALL_COSTATE
 from satsym.solvers.shooting.runge_kutta import ORDER
 
 NEAR_CORRECTION = 1e-2
-"""Last correction of steps of low order from which those of high order are corrected quickly."""
+"""Size of a correction with low order below which the corrections with high order follow."""
 
 MOST_ROUGH, MOST_ACCURATE = 8, 12
-"""Corrections of each kind."""
+"""Largest numbers of corrections with steps of low order, and of high order."""
 
 SHRINK = 0.5
-"""Corrections that shrink less, from one to the next, lead nowhere."""
+"""Factor by which each correction must be smaller than the one before; otherwise the problem has not converged."""
 
 COARSE = 1e-6
-"""Correction after which twice as many steps show the error."""
+"""Size of a correction below which the number of steps is doubled to estimate the error."""
 
 FEWEST_PARTS, MOST_PARTS = 2, 32
-"""Steps of high order in a segment."""
+"""Smallest and largest number of steps of high order in a segment."""
 
 ROUNDING = 1e-11
-"""Corrections below this that no longer shrink are rounding."""
+"""Size below which a correction that no longer shrinks is attributed to rounding."""
 
 
 class Outcome(Enum):
-    """How a problem ended."""
+    """How the solution of a problem ended."""
 
     SOLVED = "solved"
     NO_CONVERGENCE = "corrections do not shrink"
@@ -50,37 +50,37 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """What Newton's method came to."""
+    """Result of Newton's method for M problems."""
 
     z: Array
-    """Nodes, shape (2n, N+1, M)."""
+    """States and costates at the nodes, shape (2n, N+1, M)."""
     cost: Array
     """Integral of the running cost, shape (M,)."""
     error: Array
-    """Estimate of the largest error, relative to the sizes of states and costates, shape (M,)."""
+    """Estimate of the largest error, relative to the magnitudes of states and costates, shape (M,)."""
     outcome: NDArray[np.object_]
-    """An :class:`Outcome` of each, shape (M,)."""
+    """The :class:`Outcome` of each problem, shape (M,)."""
 
     @property
     def solved(self) -> NDArray[np.bool_]:
-        """Which are solved, shape (M,)."""
+        """Whether each problem is solved, shape (M,)."""
         return np.asarray(self.outcome == Outcome.SOLVED)
 
     def only(self, chosen: NDArray[np.intp]) -> Nodes:
-        """The equations of some of the problems."""
+        """Return the results of the problems with the given indices."""
         z, cost, error = (rows[..., chosen] for rows in (self.z, self.cost, self.error))
         return Nodes(z, cost, error, self.outcome[chosen])
 
 
 def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
-    """Lead each problem from a start to near an extremal: nodes, and how each ended, shape (M,).
+    """Improve an initial guess of each problem until it is near an extremal; return nodes and outcomes, shape (M,).
 
     Parameters
     ----------
     many
         The problems.
     start
-        Nodes, shape (2n, N+1, M).
+        Initial guess of the values at the nodes, shape (2n, N+1, M).
     """
     z, outcome = start.copy(), np.full(many.count, Outcome.SOLVED, dtype=object)
     on, before = np.arange(many.count), np.full(many.count, np.inf)
@@ -102,16 +102,16 @@ def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
 
 
 def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> Nodes:
-    """Make nodes accurate that are near to the extremal, and report what is known of those that are not.
+    """Improve nodes near an extremal to a required accuracy; other problems keep their outcome.
 
     Parameters
     ----------
     many
         The problems.
     z, outcome
-        Nodes, shape (2n, N+1, M), and which are near, ``SOLVED``, shape (M,).
+        Values at the nodes, shape (2n, N+1, M), and outcomes, ``SOLVED`` for problems near an extremal, shape (M,).
     aim
-        Largest error.
+        Largest relative error.
     """
     z, outcome = z.copy(), outcome.copy()
     cost, error = np.full(many.count, np.nan), np.full(many.count, np.inf)
@@ -147,7 +147,7 @@ def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> 
 
 
 def transitions(many: Many, z: Array) -> Array:
-    """Ends of segments by their beginnings, by steps of low order, shape (2n, 2n, N, M)."""
+    """Return the transition matrices of all segments, by steps of low order, shape (2n, 2n, N, M)."""
     return _rough(many, z, 2)[1]
 
 
@@ -158,18 +158,21 @@ def _rough(many: Many, z: Array, parts: int) -> tuple[Array, Array]:
 
 
 def _columns(chosen: NDArray[np.intp], count: int) -> NDArray[np.intp] | slice:
-    """Chosen columns; as a slice, which copies nothing, where they are all."""
+    """Return the chosen columns as an index, or as a slice, which copies nothing, if all columns are chosen."""
     return slice(None) if len(chosen) == count else chosen
 
 
 def _missing(many: Many, z: Array, reached: Array) -> tuple[Array, Array, Array]:
-    """What a correction of nodes is to make up for, given where segments end: at the start, between, at the end."""
+    """Return the residuals at the initial time, at the ends of segments, and at the final time."""
     n = many.states
     return many.initial - z[:n, 0], reached - z[:, 1:], many.end - z[:n, -1]
 
 
 def _size(many: Many, step: Array, z: Array) -> Array:
-    """The largest change, states relative to their size (at least one), costates to theirs, shape (M,)."""
+    """Return the size of a correction, shape (M,).
+
+    States are relative to their magnitude (at least one unit), costates to theirs.
+    """
     n, units = many.states, many.units[:, None]
     moved, there = (np.abs(rows).max(axis=1) / units for rows in (step, z))
     states = moved[:n].max(axis=0) / np.maximum(there[:n].max(axis=0), 1.0)
@@ -179,58 +182,63 @@ def _size(many: Many, step: Array, z: Array) -> Array:
 
 
 def _positive(many: Many, z: Array) -> NDArray[np.bool_]:
-    """Whether states that must be positive are so, shape (M,)."""
+    """Return whether all states that must be positive are positive, shape (M,)."""
     return np.asarray((z[list(many.problem.positive)] > 0.0).all(axis=(0, 1)))
 
 
 @dataclass(frozen=True, eq=False)
 class _Matching:
-    """The linearised equations of M shooting problems: segments meet, and ends are as given.
+    """Linearised equations of M shooting problems: continuity between segments, and the boundary conditions.
 
-    All nodes follow from the initial costates (condensing), so that a system as small as the boundary is left (Bock and
-    Plitt, A Multiple Shooting Algorithm for Direct Solution of Optimal Control Problems, 1984).
+    All nodes are expressed by the initial costates (condensing), so that only a system of the size of the boundary
+    conditions remains (Bock and Plitt, A Multiple Shooting Algorithm for Direct Solution of Optimal Control Problems,
+    1984).
     """
 
     transition: Array
-    """Ends of segments by their beginnings, shape (2n, 2n, N, M)."""
+    """Transition matrices of the segments, shape (2n, 2n, N, M)."""
     field: Array
-    """Nodes by initial costates in their units, and perhaps by something else, shape (2n, n or more, N+1, M)."""
+    """Derivatives of the nodes with respect to the scaled initial costates, possibly with further columns.
+
+    The shape is (2n, n or more, N+1, M).
+    """
     inverse: Array
-    """Initial costates by what is missing at the end, in units, shape (n, n, M); not finite where nothing decides."""
+    """Derivatives of the scaled initial costates with respect to the final residual, shape (n, n, M); not finite if
+    singular."""
     units: Array
     """Units of states and costates, shape (2n,)."""
     condense: Condensing
 
     @classmethod
     def of(cls, transition: Array, units: Array, condense: Condensing) -> _Matching:
-        """The equations with these transitions."""
+        """Return the equations with given transition matrices."""
         field = condense(transition, _unity(units, transition.shape[3]), None)
         return cls(transition, field, _inverse(field, units), units, condense)
 
     def only(self, chosen: NDArray[np.intp]) -> _Matching:
-        """The equations of some of the problems."""
+        """Return the equations of the problems with the given indices."""
         if len(chosen) == self.inverse.shape[2]:
             return self
         transition, field, inverse = (rows[..., chosen] for rows in (self.transition, self.field, self.inverse))
         return _Matching(transition, field, inverse, self.units, self.condense)
 
     def correction(self, start: Array, gaps: Array, missing: Array) -> Array:
-        """By how much nodes move for segments to meet and end as they should, shape (2n, N+1, M).
+        """Return the correction of the nodes that solves the linearised equations, shape (2n, N+1, M).
 
         Parameters
         ----------
         start
-            Where the first should be, less where it is, shape (n, M).
+            Required initial state minus the state at the first node, shape (n, M).
         gaps
-            Where each segment ends, less where the next one begins, shape (2n, N, M).
+            End of each segment minus the next node, shape (2n, N, M).
         missing
-            Where the last should end, less the last node, shape (n, M).
+            Required final state minus the state at the last node, shape (n, M).
         """
         begun = np.concatenate([start, np.zeros_like(start)])
         return self._closed(self.condense(self.transition, begun[:, None], gaps)[:, 0], missing)
 
     def _closed(self, found: Array, missing: Array) -> Array:
-        """Corrections without initial costates, with those that are missing for the end, in place."""
+        """Return corrections completed, in place, by the initial costates that satisfy the final conditions."""
         wanted = (missing - found[: len(missing), -1]) / self.units[: len(missing), None]
         self.condense.combine(self.field, (self.inverse * wanted).sum(axis=1), found)
         return found
@@ -239,7 +247,7 @@ class _Matching:
 def _corrected(
     transition: Array, units: Array, condense: Condensing, start: Array, gaps: Array, missing: Array
 ) -> Array:
-    """Corrections as by :meth:`_Matching.correction`, asked for once, with one look at the transitions."""
+    """Return the correction of :meth:`_Matching.correction` in one pass over the transition matrices."""
     begun = np.concatenate([start, np.zeros_like(start)])
     found = condense(transition, np.concatenate([_unity(units, transition.shape[3]), begun[:, None]], axis=1), gaps)
     inverse = _inverse(found[:, :-1], units)
@@ -247,7 +255,7 @@ def _corrected(
 
 
 def _unity(units: Array, count: int) -> Array:
-    """Each initial costate in its unit, shape (2n, n, M)."""
+    """Return columns with one initial costate each, in its unit, shape (2n, n, M)."""
     rows, n = len(units), len(units) // 2
     found = np.zeros((rows, n, count))
     found[np.arange(n, rows), np.arange(n)] = units[n:, None]

@@ -1,4 +1,4 @@
-"""Many problems from cold starts or from nodes that are guessed, to the error that is aimed at, within bounds."""
+"""Solution of many problems from the straight line or from a guess, to the required accuracy and within bounds."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
 from satsym.solvers.collocation.accuracy.refinement import AIM, FINEST
 
 SEEDED_EVERY = 8
-"""Every so many problems one starts from the straight line, the others from the nearest that is solved."""
+"""Every problem with this number in the sequence starts from the straight line, the others from a solved neighbour."""
 
 ROUNDS = 2
-"""Times that what led nowhere starts from another solved neighbour."""
+"""Number of times that an unsolved problem is started from another solved neighbour."""
 
 
 ROUNDED = 1e-14
-"""Error that is aimed at where every digit counts."""
+"""Relative error that is required if results must be accurate to rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """What came of many problems."""
+    """Results of many problems."""
 
     nodes: Nodes
     neighbour: NDArray[np.bool_]
-    """Which started from a neighbour, shape (M,)."""
+    """Whether each problem was started from the solution of a neighbour, shape (M,)."""
 
 
 def solved_together(many: Many) -> Answers:
-    """Solve problems that come in an order in which neighbours follow each other.
+    """Solve problems whose order places neighbours next to each other.
 
-    What is solved, and from where, depends on the problems and on their order alone.
+    Which problems are solved, and from which initial guess, depends only on the problems and their order.
     """
     line, every = many.line, np.arange(many.count)
     seeds = every % SEEDED_EVERY == 0
@@ -56,7 +56,10 @@ def solved_together(many: Many) -> Answers:
 
 
 def to_rounding(many: Many, nodes: Nodes, chosen: NDArray[np.intp]) -> Nodes:
-    """Make some solutions as accurate as rounding allows: where controls hardly move the end, it takes more digits."""
+    """Return the solutions with some of them improved to rounding errors.
+
+    This is needed where controls have little influence on the final state.
+    """
     if not len(chosen):
         return nodes
     near = np.full(len(chosen), Outcome.SOLVED, dtype=object)
@@ -67,12 +70,12 @@ def to_rounding(many: Many, nodes: Nodes, chosen: NDArray[np.intp]) -> Nodes:
 
 
 def _open(nodes: Nodes) -> NDArray[np.bool_]:
-    """Which may still be solved from elsewhere."""
+    """Return which problems may still be solved from another initial guess."""
     return np.asarray(~nodes.solved & (nodes.outcome != Outcome.BOUNDS))
 
 
 def _blank(many: Many) -> Nodes:
-    """The nodes of problems of which none is solved yet."""
+    """Return the results of problems of which none is solved yet."""
     count = many.count
     return Nodes(
         np.full((2 * many.states, len(many.mesh), count), np.nan),
@@ -83,13 +86,13 @@ def _blank(many: Many) -> Nodes:
 
 
 def _put(found: Nodes, chosen: NDArray[np.intp], some: Nodes) -> None:
-    """Put the nodes of some problems into those of all, in place."""
+    """Write the results of some problems into those of all problems, in place."""
     found.z[:, :, chosen] = some.z
     found.cost[chosen], found.error[chosen], found.outcome[chosen] = some.cost, some.error, some.outcome
 
 
 def _nearest(many: Many, left: NDArray[np.intp], known: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Which of the known ones is most like each that is left."""
+    """Return, for each unsolved problem, the index of the solved problem with the nearest data."""
     places = np.concatenate([many.initial, many.end, many.parameters])
     spread = np.ptp(places, axis=1)
     varied = spread > 0.0
@@ -99,14 +102,14 @@ def _nearest(many: Many, left: NDArray[np.intp], known: NDArray[np.intp]) -> NDA
 
 
 def solved(many: Many, start: Array) -> Nodes:
-    """Solve from a start.
+    """Solve problems from an initial guess, without bounds.
 
     Parameters
     ----------
     many
         The problems.
     start
-        Nodes, shape (2n, N+1, M).
+        Initial guess of the values at the nodes, shape (2n, N+1, M).
     """
     with np.errstate(all="ignore"):
         nodes = accurate(many, *rough(many, start), aim_of(many))
@@ -116,12 +119,15 @@ def solved(many: Many, start: Array) -> Nodes:
 
 
 def aim_of(many: Many) -> float:
-    """Error that is aimed at."""
+    """Return the relative error that is required of the nodes."""
     return max(AIM * many.instance.solver.tolerance, FINEST)
 
 
 def bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
-    """Whose controls may leave the bounds, judged by nodes and what they change by between these, shape (M,)."""
+    """Return whose controls may exceed their bounds, shape (M,).
+
+    Controls between nodes are estimated from the change between neighbouring nodes.
+    """
     within = many.instance.control_set
     if not within.bounded or not many.count:
         return np.zeros(many.count, dtype=bool)

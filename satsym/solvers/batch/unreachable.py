@@ -1,6 +1,7 @@
-"""Which linear motions no control within its bounds brings to their ends: planes found for some show it of others.
+"""Linear motions that cannot reach their final states within the bounds on controls, as shown by separating planes.
 
-To look for such a plane takes long, to see on which side of one an end lies does not. What none shows is left open.
+The search for a plane takes long, but to test on which side of a known plane another final state lies does not. Motions
+for which no plane is found are left open.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ from satsym.solvers.switching.linear.by_reach import separated_by, separating
 
 
 def unreachable(many: Many, instances: Sequence[Instance], which: NDArray[np.intp]) -> dict[int, str]:
-    """Why there is no answer, of those of which it is known.
+    """Return the reasons why motions have no solution, by index, as far as this is shown.
 
     Parameters
     ----------
     many, instances
-        Linear motions of one system with given ends and times.
+        Linear motions of one system with given final states and times.
     which
-        That are asked for; in their order planes are looked for.
+        Indices of the motions to be examined; planes are searched in this order.
     """
     found: dict[int, str] = {}
     left = which

@@ -1,1 +1,1 @@
-"""Extremals of saturated controls, many at once."""
+"""Time-optimal extremals with saturated controls, for many instances at once."""

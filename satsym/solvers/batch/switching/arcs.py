@@ -1,7 +1,7 @@
-"""Extremals of exact arcs of linear motions, by Newton's method: text that is compiled.
+"""Newton's method for the switching times of time-optimal linear motions; this source is compiled.
 
-Motions are stated as in :mod:`satsym.solvers.batch.switching.planes`. Times of switches are counted back from the end,
-control by control.
+Motions are given as in :mod:`satsym.solvers.batch.switching.planes`. Switching times are counted backwards from the
+final time, one control after the other.
 """
 
 from __future__ import annotations
@@ -17,16 +17,19 @@ Places = NDArray[np.int64]
 CORRECTIONS = 30
 
 FIRST_LENGTH = 1e-3
-"""Share of the duration that an arc has at first where one more is needed than signs show."""
+"""Initial length, as a fraction of the duration, of an arc that is added if the signs show one arc too few."""
 
 SETTLED_STEP, DIVERGED_STEP = 1e-11, 1e6
-"""Relative size of a correction after which one more makes arcs exact, and of one that leads nowhere."""
+"""Relative size of a correction after which one more correction follows as the last, and of one that has diverged."""
 
 
 def switches_of(
     costate: Array, rates: Array, powers: Array, length: float, duration: float, times: Array, controls: Places
 ) -> int:
-    """Where switching functions change their signs, control by control; how many, or -1 if too many."""
+    """Write the times at which switching functions change sign, control by control; return their number, or -1.
+
+    -1 means that there are more sign changes than `times` can hold.
+    """
     n, count = len(costate), 0
     for c in range(rates.shape[1] - n - 1):
         before = 0.0
@@ -49,7 +52,7 @@ def switches_of(
 
 
 def last_levels(costate: Array, rates: Array, box: Array) -> Array:
-    """Controls at the end: where a switching function vanishes there, its rate decides."""
+    """Return the controls at the final time; if a switching function vanishes there, its derivatives decide."""
     n, m = len(costate), box.shape[1]
     found = np.zeros(m)
     column, following = np.zeros(n), np.zeros(n)
@@ -71,7 +74,7 @@ def last_levels(costate: Array, rates: Array, box: Array) -> Array:
 
 
 def outermost(costate: Array, rates: Array, table: Array) -> float:
-    """Size of the first control's switching function at an end, where one that is missed is next."""
+    """Return the magnitude of the first control's switching function at one end of the motion."""
     found = 0.0
     for i in range(len(costate)):
         for j in range(len(costate)):
@@ -80,7 +83,10 @@ def outermost(costate: Array, rates: Array, table: Array) -> float:
 
 
 def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Array, count: int, final: Array) -> int:
-    """Add a switch of a single control next to the end at which its switching function is smaller; how many then."""
+    """Add a switching time near the end where the switching function of a single control is smaller.
+
+    Return the number.
+    """
     if outermost(costate, rates, powers[0]) < outermost(costate, rates, whole):
         for s in range(count, 0, -1):
             times[s] = times[s - 1]
@@ -91,7 +97,7 @@ def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Ar
 
 
 def slopes(table: Array, rates: Array, column: int) -> Array:
-    """What an impulse of a control does to the end, and its rate by the time that is left, shape (2, n)."""
+    """Return the effect of a control impulse on the final state, and its derivative in the time to go, shape (2, n)."""
     n = len(table)
     found = np.zeros((2, n))
     for i in range(n):
@@ -103,7 +109,7 @@ def slopes(table: Array, rates: Array, column: int) -> Array:
 
 
 def begun(rates: Array, x: Array, u: Array) -> Array:
-    """Rates of states, shape (n,)."""
+    """Return the time derivatives of the states, shape (n,)."""
     n = len(x)
     found = np.zeros(n)
     for i in range(n):
@@ -130,9 +136,10 @@ def equations(
     times: Array,
     controls: Places,
 ) -> None:
-    """Newton's equations for the times, the costates and the duration, times in units of the duration.
+    """Set up Newton's equations for switching times, costates and duration, with times in units of the duration.
 
-    The end is met, every switching function vanishes at its switches, and costates keep their size.
+    The conditions are that the final state is reached, that each switching function vanishes at its switching times,
+    and that the norm of the costates is unchanged.
     """
     n, count, m = len(x), len(times), len(final)
     whole, level = at(rates, powers, length, duration), np.zeros(m)
@@ -171,12 +178,12 @@ def equations(
 
 
 def shrunk(share: float, now: float, change: float) -> float:
-    """The share of a correction that leaves a quarter of what is there."""
+    """Return the largest fraction of a correction that leaves at least a quarter of a positive quantity."""
     return min(share, -0.75 * now / change) if now + change < 0.25 * now else share
 
 
 def room(times: Array, controls: Places, duration: float, change: Array, longer: float) -> float:
-    """The share of a correction by which no arc shrinks to less than a quarter."""
+    """Return the largest fraction of a correction for which every arc keeps at least a quarter of its length."""
     share, count = shrunk(1.0, duration, longer), len(times)
     for s in range(count):
         after_another = s > 0 and controls[s - 1] == controls[s]
@@ -188,7 +195,7 @@ def room(times: Array, controls: Places, duration: float, change: Array, longer:
 
 
 def magnitude(values: Array) -> float:
-    """The largest magnitude; not a number where one is none."""
+    """Return the largest magnitude; NaN if one value is NaN."""
     found = 0.0
     for value in values:
         if found == found and not abs(value) <= found:
@@ -197,7 +204,7 @@ def magnitude(values: Array) -> float:
 
 
 def scaled(values: Array, unit: float) -> None:
-    """Bring values into other units, in place."""
+    """Divide values by a unit, in place."""
     for i in range(len(values)):
         values[i] /= unit
 
@@ -214,12 +221,12 @@ def exact(
     times: Array,
     controls: Places,
 ) -> tuple[int, float]:
-    """Switching times, costates at the end and the duration by Newton's method, the first two in place.
+    """Compute switching times and final costates, in place, and the duration by Newton's method.
 
     Returns
     -------
     tuple
-        How many switches, -1 where that fails; and the duration.
+        Number of switching times, -1 if the method fails; and the duration.
     """
     n, m = len(x), box.shape[1]
     count = switches_of(costate, rates, powers, length, duration, times, controls)

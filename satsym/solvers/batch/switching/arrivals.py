@@ -1,4 +1,4 @@
-"""Least times of many linear motions under saturated controls that switch, each with its extremal of exact arcs."""
+"""Minimum times of many linear motions under saturated controls, each with its extremal of exact arcs."""
 
 from __future__ import annotations
 
@@ -19,51 +19,54 @@ from satsym.solvers.batch.switching import arcs, planes, soonest
 from satsym.solvers.collocation.scaling import final_argument
 
 DRAWN = 3
-"""Places at which coefficients of each motion are compared."""
+"""Number of random points at which the coefficients of each motion are compared."""
 
 EQUAL_COEFFICIENTS = 1e-12
-"""Relative difference of coefficients that is rounding."""
+"""Relative difference of coefficients below which they are equal up to rounding."""
 
 FOLLOWED = 1e-7
-"""Relative difference of the reference's rate, by differences, from that of a motion without control."""
+"""Relative difference below which the reference, by finite differences, is a motion without control."""
 
 STEP = 1e-5
-"""Step of the differences, relative to times."""
+"""Step of the finite differences, relative to the time."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arrivals:
-    """What was found for M instances."""
+    """Minimum times and extremals of M instances."""
 
     instances: Sequence[Instance]
     solved: NDArray[np.bool_]
-    """For which there is an extremal; the others are for other solvers, shape (M,)."""
+    """Whether an extremal was found, shape (M,); the other instances are left to other solvers."""
     durations: Array
     costs: Array
-    """Shapes (M,)."""
+    """Durations and costs, shapes (M,)."""
     costates: Array
     ends: Array
-    """At the start, and states at the end, shapes (n, M)."""
+    """Initial costates and final states, shapes (n, M)."""
     times: Array
     controls: NDArray[np.int64]
-    """Switches in the order of time, and which control, shape (S, M): after the last one come the end and -1."""
+    """Switching times in increasing order, and indices of the switched controls, shape (S, M).
+
+    Unused entries are the final time and -1.
+    """
 
     def only(self, chosen: NDArray[np.intp]) -> Arrivals:
-        """The arrivals of some of the motions."""
+        """Return the results of the instances with the given indices."""
         arrays = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "instances"}
         own = {name: table[..., chosen] for name, table in arrays.items()}
         return replace(self, instances=[self.instances[k] for k in chosen], **own)
 
 
 def stated(instances: Sequence[Instance]) -> Array:
-    """Which states are given at the end, which are on the reference, and the former's values, shape (3, M, n)."""
+    """Return the final conditions, shape (3, M, n): whether given, whether on the reference, and given values."""
     known: dict[int, tuple[float, ...]] = {}  # most share their end
     rows = [known.get(id(one.final)) or known.setdefault(id(one.final), final_argument(one)) for one in instances]
     return np.array(rows).reshape(len(rows), 3, -1).swapaxes(0, 1)
 
 
 def applies(instance: Instance) -> bool:
-    """Whether an instance asks for the least time to a state that is given wholly, within bounds on each control."""
+    """Return whether an instance is a minimum-time problem with a given final state and bounds on each control."""
     spec = instance.model.spec
     plain = spec.switching and spec.control_set == "box" and not (spec.throttled or spec.multipliers)
     plain = plain and spec.autonomous and not spec.has_terminal_cost and not spec.in_arcs
@@ -72,14 +75,14 @@ def applies(instance: Instance) -> bool:
 
 
 def first_arrivals(instances: Sequence[Instance], compiled: bool) -> Arrivals:
-    """The least times of instances of one model, which come in an order in which neighbours follow each other.
+    """Return the minimum times of instances of one model, whose order places neighbours next to each other.
 
     Parameters
     ----------
     instances
-        Of one model, to each of which :func:`applies`.
+        Instances of one model, to each of which :func:`applies`.
     compiled
-        Whether by machine code.
+        Whether to use compiled code.
     """
     count, n, m = len(instances), len(instances[0].initial), len(instances[0].lower)
     boxes = np.array([[one.lower, one.upper] for one in instances])
@@ -115,14 +118,17 @@ def first_arrivals(instances: Sequence[Instance], compiled: bool) -> Arrivals:
 
 
 def _no_switches(count: int) -> tuple[Array, NDArray[np.int64]]:
-    """Room for the times of switches, and for which control it is."""
+    """Return arrays for the switching times and the indices of the switched controls."""
     return np.zeros((count, soonest.SWITCHES)), np.zeros((count, soonest.SWITCHES), dtype=np.int64)
 
 
 def _in_order(
     counts: NDArray[np.int64], starts: Array, durations: Array, times: Array, controls: NDArray[np.int64]
 ) -> tuple[Array, NDArray[np.int64]]:
-    """Times of switches, of all controls one after the other, and which control; counted back from the end before."""
+    """Return switching times of all controls in increasing order, and the indices of the switched controls.
+
+    The arguments contain these times counted backwards from the final time.
+    """
     switches = max(int(counts.max()), 0)
     used = np.arange(switches) < counts[:, None]
     forward = np.where(used, durations[:, None] - times[:, :switches], np.inf)
@@ -132,7 +138,7 @@ def _in_order(
 
 
 def _states_there(instances: Sequence[Instance], end: Array, t: Array) -> Array:
-    """States at the end, shape (M, n)."""
+    """Return the final states, shape (M, n)."""
     _, on_reference, _ = stated(instances)
     if not on_reference.any():
         return end
@@ -143,7 +149,7 @@ def _states_there(instances: Sequence[Instance], end: Array, t: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def _machine() -> Callable[..., None]:
-    """Machine code, the same for all models: made or read by a call with no motions, by one process at a time."""
+    """Return the compiled function, which is the same for all models and compiled by one process at a time."""
     trees = [ast.parse(Path(str(one.__file__)).read_text(encoding="utf-8")).body for one in (planes, arcs, soonest)]
     ours = ("__future__", "satsym")
     body = [n for tree in trees for n in tree if not str(getattr(n, "module", "")).startswith(ours)]
@@ -160,7 +166,7 @@ def _many(compiled: bool) -> Callable[..., None]:
 
 
 def _coefficients(instances: Sequence[Instance]) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """A, B and d of each motion side by side, its cost of time, and whether that is all there is."""
+    """Return A, B and d of each motion side by side, its cost per unit time, and whether it is linear."""
     first = instances[0]
     model, count, n, m = first.model, len(instances), len(first.initial), len(first.lower)
     rng, p = np.random.default_rng(0), tuple(np.array([one.parameters for one in instances]).reshape(count, -1).T)
@@ -185,7 +191,7 @@ def _coefficients(instances: Sequence[Instance]) -> tuple[Array, Array, NDArray[
 
 
 def _same(drawn: list[Array]) -> NDArray[np.bool_]:
-    """Whether values do not depend on where they are taken, shape (M,)."""
+    """Return whether values are the same at all random points, shape (M,)."""
     spread, size = np.ptp(drawn, axis=0).max(axis=0), np.abs(drawn).max(axis=(0, 1))
     return np.asarray(np.isfinite(size) & (spread <= EQUAL_COEFFICIENTS * size))
 
@@ -193,10 +199,10 @@ def _same(drawn: list[Array]) -> NDArray[np.bool_]:
 def _ends(
     instances: Sequence[Instance], rates: Array, linear: NDArray[np.bool_]
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Initial states and ends, shapes (M, n), and for which that is all there is to them.
+    """Return initial and final states, shapes (M, n), and for which instances the motion remains linear.
 
-    An end on a reference that moves as the motion itself does without control is the origin of the difference of both,
-    which has no drift: that is taken out of ``rates``.
+    If the final state is on a reference that is itself a motion without control, the difference from the reference is
+    used: its final state is zero, and its drift is removed from ``rates``.
     """
     n, first = len(instances[0].initial), instances[0]
     x = np.array([one.initial for one in instances])

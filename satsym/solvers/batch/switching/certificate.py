@@ -1,8 +1,9 @@
-"""The certificate of many extremals of least time, but for competitors: those that are minima beyond doubt.
+"""Certificate of many time-optimal extremals, except the comparison with competing extremals.
 
-As :mod:`satsym.solvers.certificate.switching.conditions` has it for one: the flow again from the initial costates, by
-an integration that the solver does not use; H and its minimum at many places; strict switches; and the second variation
-in the times, where the derivatives of the end by them leave any free. What is not clear here is left to that.
+The conditions are those of :mod:`satsym.solvers.certificate.switching.conditions` for a single extremal: the flow from
+the initial costates, by an integrator that the solver does not use; the Hamiltonian and its minimum at many times;
+strict switches; and the second variation in the switching times. An extremal for which a condition is not clear is left
+to the certificate of single extremals.
 """
 
 from __future__ import annotations
@@ -27,31 +28,33 @@ from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Status, Verdict
 
 PARTS = (1, 2, 4, 8)
-"""Into which arcs are taken until errors of the flow are small enough."""
+"""Numbers of steps for each arc, tried in turn until the errors of the flow are small enough."""
 
 PLACES = np.array([1e-3, 0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98, 1.0 - 1e-3])
-"""Shares of an arc at which H and switching functions are looked at."""
+"""Positions within an arc, as fractions, at which the Hamiltonian and switching functions are evaluated."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Flow:
-    """Extremals again, arc by arc; arcs of no length follow after the last."""
+    """Extremals integrated arc by arc; arcs of zero length follow after the last arc."""
 
     begins: Array
     lengths: Array
-    """Lengths of the arcs, shapes (K, M)."""
+    """Initial times and lengths of the arcs, shapes (K, M)."""
     u: Array
     """Controls on each arc, shape (K, m, M)."""
     values: Array
-    """States, costates, and derivatives of the states by the times of switches: where arcs begin, and at the end, shape
-    (K + 1, 2n + n S, M)."""
+    """States, costates, and derivatives of the states with respect to switching times, shape (K + 1, 2n + n S, M).
+
+    The first index is the beginning of each arc, and finally the end of the motion.
+    """
     error: Array
-    """The largest of the flow, relative, shape (M,)."""
+    """Largest relative error of the integration, shape (M,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Many:
-    """Extremals as columns, with what the rates need."""
+    """Extremals as columns, with the functions that their integration needs."""
 
     found: Arrivals
 
@@ -60,12 +63,12 @@ class _Many:
         return self.found.instances[0].model
 
     def parameters(self, times: int = 1) -> tuple[Array, ...]:
-        """The parameters of all instances, an array for each parameter, repeated so many times one after the other."""
+        """Return the parameters of all instances, one array for each parameter, repeated for a number of times."""
         rows = np.array([one.parameters for one in self.found.instances]).reshape(len(self.found.instances), -1)
         return tuple(np.tile(rows.T, times))
 
     def rates(self, u: Array, p: tuple[Array, ...], t: Array, y: Array) -> Array:
-        """Rates of states, costates and derivatives of the states."""
+        """Return the time derivatives of states, costates and derivatives of the states."""
         n, model = len(self.found.costates), self.model
         x, lam = y[:n], y[n : 2 * n]
         rows = [model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)]
@@ -77,7 +80,7 @@ class _Many:
 
 
 def minima(found: Arrivals) -> NDArray[np.bool_]:
-    """Which are strict local minima beyond doubt, shape (M,): the verdict ``local minimum``."""
+    """Return which extremals are clearly strict local minima (verdict ``local minimum``), shape (M,)."""
     fine = np.zeros(len(found.instances), dtype=bool)
     chosen = np.flatnonzero(found.solved)
     if len(chosen):
@@ -90,7 +93,7 @@ def minima(found: Arrivals) -> NDArray[np.bool_]:
 
 
 def _flow(found: Arrivals) -> _Flow:
-    """Integrate arcs from the initial states and costates and the times of switches, which are judged afterwards."""
+    """Integrate the arcs from initial states, costates and switching times; the conditions are checked afterwards."""
     many, (n, count) = _Many(found), found.costates.shape
     initial = np.array([one.initial for one in found.instances]).T
     start = np.array([one.t0 for one in found.instances])
@@ -117,7 +120,7 @@ def _flow(found: Arrivals) -> _Flow:
 
 
 def _along(many: _Many, u: Array, p: tuple[Array, ...], t: Array, h: Array, y: Array) -> tuple[Array, Array]:
-    """Where an arc ends, and the largest relative error, shape (M,)."""
+    """Return the values at the end of an arc, and the largest relative error, shape (M,)."""
     for parts in PARTS:
         now, worst = y, np.zeros(len(t))
         for part in range(parts):
@@ -135,7 +138,7 @@ def _along(many: _Many, u: Array, p: tuple[Array, ...], t: Array, h: Array, y: A
 
 
 def _ended(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
-    """Whether the flow ends where it should, with H at its end as a free time asks for."""
+    """Return whether the motion reaches its final state, and the Hamiltonian satisfies the condition of a free time."""
     many, n = _Many(found), len(found.costates)
     x, lam = flow.values[:, :n], flow.values[:, n : 2 * n]
     tf = flow.begins[-1] + flow.lengths[-1]
@@ -163,7 +166,7 @@ def _ended(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
 
 
 def _slip(many: _Many, tf: Array, p: tuple[Array, ...]) -> Array:
-    """The rate of the end where it is on the reference, shape (n, M)."""
+    """Return the time derivative of a final state that is on the reference, shape (n, M)."""
     _, on_reference, target = stated(many.found.instances).swapaxes(1, 2)
     if not on_reference.any():
         return np.zeros_like(target)
@@ -173,7 +176,7 @@ def _slip(many: _Many, tf: Array, p: tuple[Array, ...]) -> Array:
 
 
 def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
-    """Whether switching functions vanish at switches, strictly, and have the right signs elsewhere; H constant."""
+    """Return whether switching functions have simple zeros at switches and correct signs elsewhere, with constant H."""
     many, n, lasting = _Many(found), len(found.costates), found.durations
     arcs, count = flow.lengths.shape
     t, sigma, h, terms = _looked_at(many, flow)
@@ -212,9 +215,9 @@ def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
 
 
 def _looked_at(many: _Many, flow: _Flow) -> tuple[Array, Array, Array, Array]:
-    """Within arcs: times (K, L, M), switching functions (K, L, m, M), the change of H and the size of its terms.
+    """Return times (K, L, M), switching functions (K, L, m, M), change of H and size of its terms within arcs.
 
-    Switching functions are in units of their bounds' width, H and its terms of shape (K, L, M).
+    Switching functions are multiplied by the width of the bounds; H and its terms have shape (K, L, M).
     """
     n, (arcs, count) = len(many.found.costates), flow.lengths.shape
     m, each = flow.u.shape[1], len(PLACES)
@@ -238,18 +241,18 @@ def _looked_at(many: _Many, flow: _Flow) -> tuple[Array, Array, Array, Array]:
 
 
 def _within(many: _Many, flow: _Flow) -> NDArray[np.bool_]:
-    """Whether all states are in the domain, shape (M,)."""
+    """Return whether all states that must be positive are positive, shape (M,)."""
     names, n = many.model.spec.states, len(many.found.costates)
     places = [i for i, one in enumerate(names) if one.positive]
     return np.asarray((flow.values[:, :n][:, places] > 0.0).all(axis=(0, 1)))
 
 
 def _curved(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
-    """Whether no other times lead to the end, or those that do, to second order, cost more.
+    """Return whether the second variation is positive for all changes of the times that keep the final state.
 
-    Costates of a linear motion do not depend on when it switches. So the Hessian of the Lagrangian in the times, with
-    the costates at the end as they are, has the rates of the jumps of H on its diagonal, the same with the other sign
-    beside it in the row of the final time, and no other entries but that row's own.
+    The costates of a linear motion do not depend on the switching times. The Hessian of the Lagrangian with respect to
+    the times, for fixed final costates, therefore has the rates of the jumps of H on its diagonal, the same rates with
+    opposite sign in the row and column of the final time, and one more entry for the final time itself.
     """
     n, count = found.costates.shape
     many, last, switches = _Many(found), flow.values[-1], (found.controls >= 0).sum(axis=0)
@@ -274,7 +277,7 @@ def _curved(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
 
 
 def positive_across(by: Array, hessian: Array) -> NDArray[np.bool_]:
-    """Whether forms, shape (K, P, P), are positive wherever the linear maps, shape (K, n, P), vanish."""
+    """Return whether quadratic forms (K, P, P) are positive on the null spaces of linear maps (K, n, P)."""
     finite = np.asarray(np.isfinite(by).all(axis=(1, 2)) & np.isfinite(hessian).all(axis=(1, 2)))
     by, hessian = (np.where(finite[:, None, None], table, 0.0) for table in (by, hessian))
     _, values, rows = np.linalg.svd(by)
@@ -288,7 +291,10 @@ def positive_across(by: Array, hessian: Array) -> NDArray[np.bool_]:
 
 
 def _jump_rates(found: Arrivals, flow: _Flow) -> Array:
-    """Rates at which H jumps where controls switch, shape (S, M); whatever they are where arcs have no length."""
+    """Return the rates of change of the jumps of H at the switching times, shape (S, M).
+
+    Arbitrary for unused entries.
+    """
     many, n, count = _Many(found), len(found.costates), found.costates.shape[1]
     rates, p = np.empty(found.times.shape), many.parameters()
     for k, which in enumerate(found.controls):
@@ -299,7 +305,10 @@ def _jump_rates(found: Arrivals, flow: _Flow) -> Array:
 
 
 def _kernels_agree(found: Arrivals, flow: _Flow) -> bool:
-    """Whether the kernels do not contradict each other, near the first extremal; found out once for a model."""
+    """Return whether the kernels of a model agree with each other near the first extremal.
+
+    Computed once for each model.
+    """
     model, n = found.instances[0].model, len(found.costates)
     if model not in _AGREE:
         z, times = flow.values[:, : 2 * n, 0].T, np.append(flow.begins[:, 0], flow.begins[-1, 0] + flow.lengths[-1, 0])
@@ -312,4 +321,4 @@ def _kernels_agree(found: Arrivals, flow: _Flow) -> bool:
 
 
 _AGREE: WeakKeyDictionary[Kernels, bool] = WeakKeyDictionary()
-"""What was found out."""
+"""Model -> whether its kernels agree with each other."""

@@ -1,11 +1,14 @@
-"""What steps of linear motions do, and planes between what they reach and a given end: text that is compiled.
+"""Linear motions in steps, and planes that separate the reachable set from a given final state.
 
-Every motion is x' = A x + B u + d with low <= u <= high, from x(0) to a given end; ``rates`` is A, B and d side by
-side, shape (n, n + m + 1). ``powers`` holds what k steps do, shape (count + 1, n, n + m + 1): to states, by controls
-held at one, by the drift. ``box`` has low and high as rows. Costates at the end are a plane, which shows that an end
-is not reached if all that is reached lies on its other side. This module imports nothing of ours but others such:
-compilers see nothing else, and without one its functions run as they stand. Loops go over numbers throughout: arrays as
-a whole are no faster here, and take a compiler several times as long.
+This source is compiled.
+
+Every motion is x' = A x + B u + d with low <= u <= high, from x(0) to a given final state. ``rates`` contains A, B and
+d side by side, shape (n, n + m + 1). ``powers`` contains the effect of k steps, shape (count + 1, n, n + m + 1): the
+transition matrix, the effect of controls held at one, and the effect of the drift. ``box`` has low and high as rows. A
+plane is given by its normal, the costates at the final time: a final state is not reached if the whole reachable set
+lies on the other side of the plane. The module imports only others that are compiled with it, and its functions also
+run uncompiled. All loops run over numbers, because array expressions are no faster here and take much longer to
+compile.
 """
 
 from __future__ import annotations
@@ -16,16 +19,16 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 TERMS = 14
-"""Terms of a series, for a step whose product with the motion's rates is an eighth: they leave nothing out."""
+"""Number of terms of the exponential series, sufficient for steps of at most an eighth of the time scale."""
 
 CORNERS = 80
-"""Support points for a plane at most."""
+"""Largest number of support points in the search for a plane."""
 
 THERE = 1e-6
-"""Distance of the end from the set, in units of its size, that is none."""
+"""Distance of the final state from the reachable set, relative to the size of the set, below which it is zero."""
 
 DIP = 0.02
-"""Share of the change from step to step by which a plane that comes nearest between two steps is too near."""
+"""Fraction of the second difference of a distance, below which its minimum between two steps counts as zero."""
 
 
 def put(into: Array, values: Array) -> None:
@@ -35,13 +38,13 @@ def put(into: Array, values: Array) -> None:
 
 
 def add(into: Array, share: float, values: Array) -> None:
-    """A share of values to others."""
+    """Add a multiple of values to an array, in place."""
     for i in range(len(into)):
         into[i] += share * values[i]
 
 
 def product(one: Array, other: Array) -> float:
-    """The scalar product."""
+    """Return the scalar product of two vectors."""
     found = 0.0
     for i in range(len(one)):
         found += one[i] * other[i]
@@ -49,7 +52,7 @@ def product(one: Array, other: Array) -> float:
 
 
 def solved(matrix: Array, right: Array) -> bool:
-    """Put the solution of linear equations in the place of the right side; whether there is one."""
+    """Solve linear equations in place of the right-hand side; return whether the matrix is regular."""
     count = len(right)
     for k in range(count):
         best = k
@@ -75,7 +78,7 @@ def solved(matrix: Array, right: Array) -> bool:
 
 
 def after(rates: Array, start: Array, length: float) -> Array:
-    """What is done after a short while, from what is done before it: the exponential series."""
+    """Return the effect of a motion prolonged by a short time, by the exponential series."""
     n, width = start.shape
     found, term, following = np.zeros((n, width)), np.zeros((n, width)), np.zeros((n, width))
     for i in range(n):
@@ -97,7 +100,7 @@ def after(rates: Array, start: Array, length: float) -> Array:
 
 
 def powers_of(rates: Array, length: float, count: int) -> Array:
-    """What 0, 1, ... count steps do."""
+    """Return the effects of 0, 1, ... `count` steps."""
     n, width = rates.shape
     found = np.zeros((count + 1, n, width))
     for i in range(n):
@@ -114,7 +117,7 @@ def powers_of(rates: Array, length: float, count: int) -> Array:
 
 
 def at(rates: Array, powers: Array, length: float, time: float) -> Array:
-    """What is done in any time."""
+    """Return the effect of the motion after any time."""
     step = min(int(time / length), len(powers) - 1)
     return after(rates, powers[step], time - step * length)
 
@@ -122,9 +125,9 @@ def at(rates: Array, powers: Array, length: float, time: float) -> Array:
 def passed(
     costate: Array, rates: Array, powers: Array, length: float, x: Array, end: Array, box: Array, since: float
 ) -> float:
-    """The first time, not before a given one, at which a plane tells the end no longer from what is reached.
+    """Return the first time, not before `since`, at which a plane no longer separates the final state.
 
-    Negative where that is beyond all steps. ``box`` has low and high as rows.
+    The plane separates it from the reachable set before. The result is negative if this time is beyond all steps.
     """
     n, m = len(x), box.shape[1]
     first, gained, before, earlier = int(np.ceil(since / length - 1e-9)), 0.0, 0.0, 0.0
@@ -163,14 +166,15 @@ def passed(
 
 
 def minimum(area: float, low: float, high: float) -> float:
-    """The least of what a control does to costates times states."""
+    """Return the minimum of a control times the integral of its switching function."""
     return min(area * low, area * high)
 
 
 def nearest(powers: Array, steps: int, x: Array, end: Array, box: Array, tight: float, found: Array) -> float:
-    """How far the end is from what so many steps reach; the plane that shows it is put into ``found``.
+    """Return the distance of the final state from the set reached in `steps`; the separating plane is put into `found`.
 
-    Wolfe's algorithm, in coordinates in which the set is about round; negative where nothing is shown.
+    Wolfe's minimum-norm-point algorithm is used, in coordinates in which the set is approximately a ball. The result is
+    negative if the final state is not separated from the set.
     """
     n, m = len(x), box.shape[1]
     lower = rounding(powers, steps, box)
@@ -227,7 +231,10 @@ def nearest(powers: Array, steps: int, x: Array, end: Array, box: Array, tight: 
 
 
 def rounding(powers: Array, steps: int, box: Array) -> Array:
-    """Cholesky's factor of the second moments of what steps do; zero where they do not move everything."""
+    """Return the Cholesky factor of the second moments of the steps' effects.
+
+    Zero if they do not span the state space.
+    """
     n, m = powers.shape[1], box.shape[1]
     found = np.zeros((n, n))
     for k in range(steps):
@@ -254,7 +261,7 @@ def rounding(powers: Array, steps: int, box: Array) -> Array:
 
 
 def towards(lower: Array, point: Array) -> None:
-    """Bring a point into the coordinates in which the set is round, in place."""
+    """Transform a point into the coordinates in which the set is approximately a ball, in place."""
     for i in range(len(point)):
         for j in range(i):
             point[i] -= lower[i, j] * point[j]
@@ -262,7 +269,10 @@ def towards(lower: Array, point: Array) -> None:
 
 
 def joined(corners: Array, weights: Array, held: int, new: Array) -> int:
-    """The hull with one corner more, and without those that its nearest point does not need; -1 where that fails."""
+    """Add a corner to a simplex and remove those that its nearest point does not need; return the number, or -1.
+
+    -1 means that the linear equations are singular or that the simplex is full.
+    """
     if held == len(corners):
         return -1
     put(corners[held], new)

@@ -1,9 +1,9 @@
-"""The first arrival of linear motions under saturated controls, one motion after the other: text that is compiled.
+"""Minimum arrival times of linear motions under saturated controls, one after the other; this source is compiled.
 
-As :mod:`satsym.solvers.switching.linear.by_reach` has it: as long as a plane tells the given end from all that is
-reached nothing arrives, and there another plane is looked for (Neustadt; Eaton). Newton's method makes switching times
-and costates exact; an arrival counts if its own plane shows that nothing arrives between the known bound and it.
-Motions are stated as in :mod:`satsym.solvers.batch.switching.planes`.
+The method is that of :mod:`satsym.solvers.switching.linear.by_reach`: as long as a plane separates the final state from
+the reachable set, it is not reached, and at the end of this time another plane is searched (Neustadt; Eaton). Newton's
+method makes switching times and costates exact. An arrival is accepted if its own plane shows that there is no earlier
+arrival after the known lower bound. Motions are given as in :mod:`satsym.solvers.batch.switching.planes`.
 """
 
 from __future__ import annotations
@@ -18,25 +18,26 @@ Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
 FEWEST, SHOWN, MOST_STEPS = 16, 64, 4096
-"""Steps in which a duration shows at least, as planned, and at most."""
+"""Smallest, intended and largest number of steps into which a duration is divided."""
 
 SHORT_STEP = 0.125
-"""Largest product of a step and the motion's rates."""
+"""Largest product of a step and the motion's rates (norm of A)."""
 
 ROUNDS = 40
-"""Planes at most."""
+"""Largest number of planes that are tried."""
 
 SWITCHES = 24
-"""Switches of all controls at most."""
+"""Largest number of switching times of all controls."""
 
 TIGHT, PRECISE = 0.1, 1e-3
-"""Shares of its distance by which a plane may be nearer than the set."""
+"""Relative tolerances of the distance of a plane from the set: usual, and for the planes of an arrival."""
 
 BACK = 4
-"""Steps back at which costates of an arrival are looked for: where the end is reached no plane tells them."""
+"""Number of steps backwards in which costates of an arrival are searched, since no plane exists at the arrival itself.
+"""
 
 BEFORE = 1e-3
-"""Share of a duration before it, in which it is not looked whether anything arrives."""
+"""Fraction of a duration before an arrival in which no earlier arrival is excluded."""
 
 
 def first_arrival(
@@ -50,14 +51,15 @@ def first_arrival(
     times: Array,
     controls: Places,
 ) -> tuple[int, float]:
-    """The first arrival; costates at the end, which begin as a guess, and at the start are put in place, as are times.
+    """Compute the minimum arrival time from a guess of the final costates.
 
-    Costates are those of a cost of one for each unit of time.
+    The final costates, the initial costates and the switching times are written in place. Costates belong to a cost of
+    one per unit of time.
 
     Returns
     -------
     tuple
-        How many switches, -1 where nothing is found, or not beyond doubt; and the duration.
+        Number of switching times, -1 if no arrival is found with certainty; and the duration.
     """
     n, since, fastest = len(x), 0.0, 0.0
     for i in range(n):
@@ -123,16 +125,17 @@ def many(
     times: Array,
     controls: Places,
 ) -> None:
-    """First arrivals of many motions, each from its neighbour's costates, or else from its own guess.
+    """Compute the minimum arrival times of many motions, each from the costates of its neighbour or its own guess.
 
     Parameters
     ----------
     rates, x, end, boxes, scales
         Shapes (M, n, n + m + 1), (M, n), (M, n), (M, 2, m) and (M,).
     costates
-        Guesses at the end, shape (M, n); in their place those that are found.
+        Guesses of the final costates, shape (M, n); replaced by the computed ones.
     begins, counts, durations, times, controls
-        What is found: costates at the start, shape (M, n); shapes (M,), (M,), (M, SWITCHES), (M, SWITCHES).
+        Results: initial costates, shape (M, n); numbers of switching times, durations, switching times and indices of
+        the switched controls, shapes (M,), (M,), (M, SWITCHES), (M, SWITCHES).
     """
     known, guess = -1, np.zeros(x.shape[1])
     for k in range(len(x)):
