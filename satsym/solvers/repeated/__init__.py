@@ -1,4 +1,4 @@
-"""One instance solved again and again, for other initial states and parameters."""
+"""Repeated solution of one instance for different initial states and parameters."""
 
 from __future__ import annotations
 
@@ -38,19 +38,19 @@ from satsym.status import BadInput, Status
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What solving once more came to."""
+    """Result of solving an instance once more."""
 
     status: Status
     message: str
-    """Outcome, and one sentence for people."""
+    """Outcome, and one sentence that describes it."""
     objective: float
-    """The cost J; NaN where there is none."""
+    """The cost J; NaN if there is no solution."""
     times: Array
     x: Array
     lam: Array
-    """Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units."""
+    """Nodes, shape (N+1,), with states and costates at the nodes, shapes (n, N+1), in the units of the model."""
     origin: Origin
-    """From where it was found: the last answer, a straight line, or a cold start."""
+    """Initial guess from which the solution was found: the last solution, a straight line, or a cold start."""
     extremal: Extremal
     """The extremal in scaled variables."""
 
@@ -73,7 +73,7 @@ class Repeated:
     Attributes
     ----------
     answer
-        The last solution.
+        The result of the last call of :meth:`solve`.
 
     Raises
     ------
@@ -160,7 +160,7 @@ class Repeated:
         return other
 
     def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, Origin]:
-        """An extremal, or why there is none, and from where it was found."""
+        """Return an extremal, or the reason why there is none, and the initial guess from which it was found."""
         quick = {Origin.LAST_ANSWER: self._means.near, Origin.STRAIGHT_LINE: self._means.straight}
         for origin, attempt in quick.items():
             if cold and origin is Origin.LAST_ANSWER:
@@ -179,10 +179,15 @@ class Repeated:
     def solution(self, answer: Answer) -> Solution:
         """Return a complete solution with switching times; this takes as long as solving the instance once.
 
+        Parameters
+        ----------
+        answer
+            A result of :meth:`solve`.
+
         Raises
         ------
         ValueError
-            If there was none.
+            If the result is no solution.
         """
         if not answer.status.answered:
             raise ValueError(f"no solution: {answer.message}")
@@ -194,7 +199,7 @@ class Repeated:
 
 
 def _shooting() -> Means:
-    """Imported late: it needs SciPy, which takes longer to load than most instances to solve."""
+    """Return the shooting method; imported late, because SciPy takes longer to load than most instances to solve."""
     from satsym.solvers.repeated.by_shooting import ByShooting
 
     return ByShooting()
@@ -232,27 +237,30 @@ def _number(value: float, variable: Variable, key: str) -> float:
 
 
 class Means(Protocol):
-    """Finds extremals of instances that differ in initial state and parameters; remembers the last good one."""
+    """A method for extremals of instances that differ in initial state and parameters; it remembers the last one."""
 
     name: str
 
     def near(self, case: Instance, limits: Limits) -> Extremal | None:
-        """The extremal near the last good one; ``None`` if there is none of either."""
+        """Return the extremal near the last successful one; ``None`` if none is found, or none is remembered."""
 
     def straight(self, case: Instance, limits: Limits) -> Extremal | None:
-        """The one to which a straight line leads, if that leads to a minimum without bounds at once."""
+        """Return the extremal found from a straight line at once, if it is a minimum without bounds.
+
+        Otherwise ``None``.
+        """
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
-        """What comes of a cold start."""
+        """Return the result of a cold start."""
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
-        """An extremal that was found, with everything an answer in full has."""
+        """Return an extremal completed with everything that a full solution contains."""
 
 
 class _ByCollocation:
-    """Repeated solutions by collocation, as :class:`Means` has them: nothing is compiled.
+    """Repeated solution by collocation, without compiled functions; see :class:`Means`.
 
-    Scales and the mesh are kept, and Newton's method starts from the last curve.
+    Scales and mesh are kept, and Newton's method starts from the last curve.
     """
 
     name = "collocation"
@@ -261,7 +269,7 @@ class _ByCollocation:
         self._good: tuple[TwoPoint, Curve] | None = None
 
     def near(self, case: Instance, limits: Limits) -> Extremal | None:
-        """The extremal near the last good one, bounds brought in again."""
+        """Return the extremal near the last successful one, with bounds imposed gradually again."""
         if self._good is None:
             return None
         problem, curve = replace(self._good[0], instance=case), self._good[1]
@@ -283,7 +291,7 @@ class _ByCollocation:
         return self._sound(problem, found, limits)
 
     def straight(self, case: Instance, limits: Limits) -> Extremal | None:
-        """Newton's method from the straight line, on the mesh of the last good curve."""
+        """Return the result of Newton's method from the straight line, on the mesh of the last successful curve."""
         if self._good is None or case.tf is None:
             return None
         problem, mesh = replace(self._good[0], instance=case), self._good[1].mesh
@@ -292,14 +300,14 @@ class _ByCollocation:
         return self._sound(problem, found, limits) if found else None
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
-        """A cold start, with a mesh and scales of its own; from the search where that leads nowhere."""
+        """Return the result of a cold start with its own mesh and scales; if it fails, that of a search for a guess."""
         found = two_point.from_cold_start(case, limits, self._within)
         if found.status is not Status.NOT_CONVERGED:
             return found
         return two_point.from_cold_start(guessed(case, limits), limits, self._within)
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
-        """The extremal as it was found: nothing is missing."""
+        """Return the extremal unchanged, since collocation already provides everything."""
         return found
 
     def _sound(self, problem: TwoPoint, found: Attempt, limits: Limits) -> Extremal | None:

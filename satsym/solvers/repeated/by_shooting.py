@@ -1,4 +1,4 @@
-"""Again and again by compiled shooting: Newton's method on the arcs of the last answer."""
+"""Repeated solution by compiled shooting: Newton's method on the arcs of the last solution."""
 
 from __future__ import annotations
 
@@ -25,26 +25,29 @@ from satsym.solvers.shooting.solving import ACCURACY, converged, extremal, witho
 from satsym.status import Status
 
 Shot = tuple[Arcs, float, int]
-"""Arcs that meet, with their error and the iterations."""
+"""Continuous arcs, with their error and the number of iterations."""
 
 MOST_CORRECTIONS = 12
-"""Most corrections until a start is given up."""
+"""Largest number of corrections from one initial guess."""
 
 LOST = 30.0
-"""Size of a correction that leads nowhere."""
+"""Size of a correction above which Newton's method is abandoned."""
 
 NEAR_CORRECTION = 1e-2
-"""Size of a correction down to which few steps do: their error is below what is left to correct."""
+"""Size of a correction down to which fewer integration steps suffice, because their error is smaller."""
 
 FEWER = 4
-"""Factor by which those steps are fewer than the given ones."""
+"""Factor by which the number of integration steps is reduced for large corrections."""
 
 CLOSE_CORRECTION = 3e-5
-"""Size of a correction after which twice as many steps show the error: what is left to correct is about its square."""
+"""Size of a correction below which the number of steps is doubled to estimate the error.
+
+The remaining correction is about its square.
+"""
 
 
 class ByShooting:
-    """See :class:`satsym.solvers.repeated.Means`; for instances whose model is compiled."""
+    """Repeated solution by shooting for compiled models; see :class:`satsym.solvers.repeated.Means`."""
 
     name = "shooting"
 
@@ -53,13 +56,13 @@ class ByShooting:
         self._steps = 1
 
     def near(self, case: Instance, limits: Limits) -> Extremal | None:
-        """The extremal near the last good one, within the bounds at once."""
+        """Return the extremal near the last successful one, with bounds imposed at once."""
         if self._good is None:
             return None
         return self._kept(self._shot(replace(self._good.problem, instance=case), self._good))
 
     def straight(self, case: Instance, limits: Limits) -> Extremal | None:
-        """First without bounds, then within them."""
+        """Return the extremal found from the straight line, first without bounds, then within them."""
         if self._good is None or case.tf is None:
             return None
         problem, like = replace(self._good.problem, instance=case), self._good
@@ -73,7 +76,10 @@ class ByShooting:
         return self._kept(self._shot(problem, found[0]) if problem.control_set.bounded else found)
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
-        """A cold start, which also decides on arcs and steps; from the search where that leads nowhere."""
+        """Return the result of a cold start; if it fails, that of a search for a guess.
+
+        Arcs and steps are chosen anew.
+        """
         found = without_guess(case, limits)
         if found.status is Status.NOT_CONVERGED:
             found = without_guess(guessed(case, limits), limits)
@@ -91,7 +97,7 @@ class ByShooting:
         return extremal(found.problem, found.path, limits)
 
     def _shot(self, problem: TwoPoint, start: Arcs) -> Shot | None:
-        """Newton on arcs of a neighbouring problem."""
+        """Return the result of Newton's method on the arcs of a neighbouring problem; ``None`` if it fails."""
         tolerance = min(ACCURACY, problem.instance.solver.tolerance)
         arcs, error, iterations = _quick_newton(replace(start, problem=problem, steps=self._steps), tolerance)
         sound = error <= tolerance and (arcs.nodes[list(problem.positive)] > 0.0).all()
@@ -105,7 +111,7 @@ class ByShooting:
 
 
 def _minimum(arcs: Arcs) -> bool:
-    """Whether an extremal is a strict local minimum without bounds."""
+    """Return whether an extremal is a strict local minimum without bounds."""
     try:
         return negative_directions(arcs.problem, arcs, linearised(arcs)[0]) == 0
     except np.linalg.LinAlgError:
@@ -113,23 +119,24 @@ def _minimum(arcs: Arcs) -> bool:
 
 
 def _quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
-    """Newton's method for good starts, undamped, on compiled arcs; quick to say that a start was not good enough.
+    """Return the result of undamped Newton's method on compiled arcs, for good initial guesses.
 
     The corrections of all nodes follow from those of the initial costates and of the extra unknowns (condensing), which
-    leaves a system as small as the boundary (Bock and Plitt, A Multiple Shooting Algorithm for Direct Solution of
-    Optimal Control Problems, 1984).
+    leaves a system of the size of the boundary conditions (Bock and Plitt, A Multiple Shooting Algorithm for Direct
+    Solution of Optimal Control Problems, 1984).
 
     Parameters
     ----------
     arcs
-        Where to start, with enough steps.
+        Initial guess, with a sufficient number of steps.
     tolerance
         Largest error, estimated from twice as many steps (Richardson).
 
     Returns
     -------
     arcs, error, iterations
-        The last arcs, with twice as many steps; their estimated error, infinite where Newton failed; corrections.
+        The last arcs, with twice as many steps; their estimated error, infinite if Newton's method failed; and the
+        number of corrections.
     """
     enough, shown, transition = arcs.steps, False, None
     arcs = arcs.with_steps(max(enough // FEWER, 1))
@@ -156,12 +163,15 @@ def _quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
 
 
 def _correction(arcs: Arcs, transition: Array | None) -> tuple[Array, Array, Array]:
-    """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns; how arcs end by where they begin.
+    """Return corrections of nodes, shape (N+1, 2n), and of extra unknowns, and the transition matrices of the arcs.
 
     Parameters
     ----------
+    arcs
+        The arcs to be corrected.
     transition
-        The latter, (N, 2n, 2n), if it is known well enough: integrating it takes several times as long as the arcs.
+        The transition matrices, shape (N, 2n, 2n), if they are known accurately enough; their integration takes several
+        times as long as that of the arcs.
     """
     problem, case, n = arcs.problem, arcs.problem.instance, arcs.problem.states
     nodes, scale = np.ascontiguousarray(arcs.nodes.T), problem.scale.both[:, 0]
@@ -185,11 +195,12 @@ def _correction(arcs: Arcs, transition: Array | None) -> tuple[Array, Array, Arr
 
 @lru_cache(maxsize=16)
 def _spread(model: Kernels, free_time: bool) -> Compiled:
-    """How nodes follow what is unknown at the start if all arcs are to meet, compiled at its first call.
+    """Return a function that expresses all nodes by the initial unknowns if the arcs are to be continuous.
 
-    ``(nodes, initial, mesh, times, ends, transition, p, bounds, scale) -> field`` in scaled variables, but for the ends
-    of arcs and how these follow their beginnings: the columns of the field, shape (N+1, 2n, k), are what each initial
-    costate does, what the duration does where it is free, and what closes the gaps between the arcs and at the start.
+    ``(nodes, initial, mesh, times, ends, transition, p, bounds, scale) -> field`` is compiled at its first call.
+    Variables are scaled, except the ends of arcs and their transition matrices. The columns of the field, shape (N+1,
+    2n, k), are the effects of each initial costate, of a free duration, and of closing the gaps between arcs and at the
+    initial state.
     """
     n = len(model.spec.states)
     rows, last = 2 * n, n + free_time

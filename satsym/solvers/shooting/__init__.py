@@ -1,8 +1,8 @@
-"""Multiple shooting: the canonical equations integrated arc by arc, until the arcs meet and the right end is met.
+"""Multiple shooting: the canonical equations are integrated arc by arc, until arcs and boundary conditions match.
 
-The second route to what collocation finds, and independent of it: an explicit Runge-Kutta method of order 8 in
-place of polynomials, generated variational equations in place of collocation equations. From collocation it takes
-only where to start (Stoer and Bulirsch, Introduction to Numerical Analysis, 7.3.5).
+Shooting is independent of collocation: it uses an explicit Runge-Kutta method of order 8 instead of polynomials, and
+generated variational equations instead of collocation equations. Only the initial guess comes from collocation (Stoer
+and Bulirsch, Introduction to Numerical Analysis, 7.3.5).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Arcs: the canonical equations from each node to the next, with how their ends follow their starts."""
+"""Arcs of multiple shooting: integration of the canonical equations from each node to the next, with derivatives."""
 
 from __future__ import annotations
 
@@ -13,27 +13,32 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.shooting.runge_kutta import ORDER, advance
 
 MOST_STEPS = 32
-"""Steps of one arc at most; where more are needed, more arcs are better."""
+"""Largest number of integration steps in one arc; if more are needed, more arcs are used."""
 
 FAINT_COSTATE = 1e-2
-"""Costates whose scaled size is below this are compared at this size: a return from so near feels the rounding of the
-states as a larger share of its costates."""
+"""Scaled size below which changes of costates are no longer compared with the costates themselves.
+
+In a return from a nearby initial state, costates are so small that rounding of the states is a larger fraction of them.
+"""
 
 ASYMPTOTIC = 1e-3
-"""Error below which it falls with the steps as the order promises."""
+"""Error below which it decreases with the number of steps according to the order of the method."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """States and costates at the nodes of a mesh, from where the canonical equations take their course."""
+    """States and costates at the nodes of a mesh, from which the canonical equations are integrated."""
 
     problem: TwoPoint
     """The two-point problem."""
     mesh: Array
-    """Nodes in [0, 1], shape (N+1,). Corners must be among them, or the order is lost; with compiled kernels only the
-    path between the nodes asks for that."""
+    """Nodes in [0, 1], shape (N+1,).
+
+    Corners of the control must be among the nodes to keep the order; with compiled kernels only interpolation needs
+    that.
+    """
     nodes: Array
-    """Values there, shape (2n, N+1)."""
+    """Values at the nodes, shape (2n, N+1)."""
     theta: Array
     """Extra unknowns, shape (e,)."""
     steps: int = 1
@@ -41,22 +46,22 @@ class Arcs:
 
     @cached_property
     def widths(self) -> Array:
-        """Lengths of the steps, shape (N,)."""
+        """Lengths of the integration steps, shape (N,)."""
         found: Array = np.diff(self.mesh) / self.steps
         return found
 
     def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
-        """The arcs after a share of a correction; its first argument in shape (N+1, 2n)."""
+        """Return the arcs after a fraction `length` of a correction of nodes, shape (N+1, 2n), and extra unknowns."""
         return type(self)(
             self.problem, self.mesh, self.nodes + length * nodes.T, self.theta + length * theta, self.steps
         )
 
     def with_steps(self, steps: int) -> Arcs:
-        """The arcs with another number of steps."""
+        """Return the arcs with another number of steps."""
         return type(self)(self.problem, self.mesh, self.nodes, self.theta, steps)
 
     def size(self, nodes: Array, theta: Array) -> float:
-        """Largest change: of states, relative to their size (at least one), of costates and a free duration."""
+        """Return the largest relative change of states (or their unit, if larger), costates and a free duration."""
         state, costate = np.abs(self.nodes).reshape(2, -1).max(axis=1).tolist()
         change = np.abs(nodes).max(axis=0).reshape(2, -1).max(axis=1)
         changes = change / (max(1.0, state), max(FAINT_COSTATE, costate))
@@ -73,7 +78,7 @@ class Arcs:
         return np.append(np.stack(times, axis=1).ravel(), 1.0), np.append(flat, self.nodes[:, -1:], axis=1)
 
     def ends(self) -> Array:
-        """Where the arcs end, shape (2n, N)."""
+        """Return the values at the ends of the arcs, shape (2n, N)."""
         if self._compiled:
             return self._flight(varied=False)[0].T / self.problem.scale.both
         values = self.nodes[:, :-1]
@@ -82,9 +87,9 @@ class Arcs:
         return values
 
     def variations(self) -> tuple[Array, Array]:
-        """The ends of the arcs, shape (2n, N), and how they follow their starts, shape (N, 2n, 2n).
+        """Return the ends of the arcs, shape (2n, N), and their transition matrices, shape (N, 2n, 2n).
 
-        The latter from the variational equations, by the same steps.
+        The transition matrices are integrated from the variational equations, with the same steps.
         """
         if self._compiled:
             ends, _, transition = self._flight(varied=True)
@@ -98,7 +103,10 @@ class Arcs:
         return values[:, 0], values[:, 1:].transpose(2, 0, 1)
 
     def by_theta(self, ends: Array, transition: Array) -> Array:
-        """How the ends of the arcs follow the extra unknowns, shape (N, 2n, e): only a duration shifts their times."""
+        """Return the derivatives of the ends of arcs with respect to the extra unknowns, shape (N, 2n, e).
+
+        Only a free duration has an effect, because it shifts the times.
+        """
         problem, mesh, theta = self.problem, self.mesh, self.theta
         found = np.zeros((len(transition), len(self.nodes), problem.unknowns))
         if problem.free_time:
@@ -108,13 +116,13 @@ class Arcs:
         return found
 
     def __call__(self, tau: Array) -> Array:
-        """Values at ``tau`` in [0, 1], shape (2n, M): a shorter step from where the last one before begins."""
+        """Return values at ``tau`` in [0, 1], shape (2n, M), by a shorter step within the step that contains tau."""
         times, values = self.course
         step = np.clip(np.searchsorted(times, tau, side="right") - 1, 0, len(times) - 2)
         return advance(self._slope, times[step], values[:, step], tau - times[step])
 
     def cost(self) -> float:
-        """The cost J, scaled, with its integral by the same method."""
+        """Return the scaled cost J, with its integral computed by the same method."""
         if self._compiled:
             return self._flight(varied=False)[1] / self.problem.scale.cost + self.terminal_cost
         problem, theta, elapsed = self.problem, self.theta, self.problem.elapsed(self.theta)
@@ -130,7 +138,7 @@ class Arcs:
 
     @property
     def terminal_cost(self) -> float:
-        """S at the end, scaled."""
+        """The scaled terminal cost S."""
         return self.problem.terminal_cost(self.nodes[:, -1], self.theta)
 
     @property
@@ -138,7 +146,7 @@ class Arcs:
         return self.problem.instance.model.backend == "numba"
 
     def _flight(self, varied: bool) -> Any:
-        """What compiled functions say: ends, cost and, if it is asked for, transition in the model's units."""
+        """Return ends, cost and, if `varied`, transition matrices from compiled functions, in the model's units."""
         from satsym.solvers.shooting.compiled import integrator
 
         problem, instance = self.problem, self.problem.instance
@@ -149,11 +157,11 @@ class Arcs:
         )
 
     def _slope(self, tau: Array, values: Array) -> Array:
-        """Rates by tau, shape (2n, M)."""
+        """Return derivatives with respect to tau, shape (2n, M)."""
         return self.problem.elapsed(self.theta) * self.problem.rates(tau, values, self.theta)
 
     def _varied_slope(self, tau: Array, values: Array) -> Array:
-        """Slopes with those of the variations, which are the other columns of values, shape (2n, 1 + 2n, N)."""
+        """Return derivatives of states and costates and of their variations, shape (2n, 1 + 2n, N)."""
         elapsed, z = self.problem.elapsed(self.theta), values[:, 0]
         slopes = self.problem.jacobian(tau, z, self.theta).transpose(2, 0, 1)
         found = np.empty_like(values)
@@ -162,15 +170,15 @@ class Arcs:
         return found
 
     def _beginnings(self) -> list[Array]:
-        """Beginnings of the first steps of all arcs, of the second steps, and so on."""
+        """Return the beginnings of the first steps of all arcs, of the second steps, and so on."""
         return [self.mesh[:-1] + k * self.widths for k in range(self.steps)]
 
 
 def sufficient(arcs: Arcs, tolerance: float) -> Arcs | None:
-    """The arcs with as many steps as their ends need to be right within a tolerance; ``None`` where these are too many.
+    """Return the arcs with the number of steps that a tolerance requires; ``None`` if that is too large.
 
-    The error is estimated from two runs with few steps, one with half as many (Richardson), and goes down as the
-    order promises.
+    The error is estimated from two runs, one with half as many steps (Richardson), and extrapolated by the order of the
+    method.
     """
     steps, coarse = 1, arcs.with_steps(1).ends()
     while 2 * steps <= MOST_STEPS:

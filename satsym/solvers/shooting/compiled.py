@@ -1,7 +1,7 @@
-"""Arcs compiled with numba: integration, variational equations and corners as machine code, from scalar functions.
+"""Shooting arcs compiled with numba: integration, variational equations and corners, from scalar functions.
 
-Built once for each model, which takes seconds. Where the control meets or leaves a bound a step ends exactly
-there, so nodes may lie anywhere.
+The code is compiled once for each model, which takes seconds. A step in which a control meets or leaves a bound ends
+exactly at that time, so that nodes may lie anywhere.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ Numbers = tuple[float, ...]
 Compiled = Callable[..., Any]
 
 LOCATING = 60
-"""Secant steps to a corner, at the most."""
+"""Largest number of secant steps to a corner."""
 
 LAST_DIGITS = 1e-15
-"""How closely it is located, as a share of the step it lies in."""
+"""Tolerance of the time of a corner, as a fraction of the integration step."""
 
 
 @lru_cache(maxsize=16)
 def integrator(model: Kernels, varied: bool) -> Compiled:
-    """``(times, nodes, steps, p, bounds) -> ends, cost, transition`` for a compiled model, compiled at its first call.
+    """Return ``(times, nodes, steps, p, bounds) -> ends, cost, transition`` of a model, compiled at its first call.
 
-    All in the model's units: times and nodes, shapes (N+1,) and (N+1, 2n); where the arcs end, shape (N, 2n); the
-    integral of the running cost along all of them; and, if that is asked for, how the ends follow the starts, shape
+    All arguments and results are in the model's units: times and nodes, shapes (N+1,) and (N+1, 2n); the ends of arcs,
+    shape (N, 2n); the integral of the running cost over all arcs; and, with `varied`, the transition matrices, shape
     (N, 2n, 2n).
     """
     rows = 2 * len(model.spec.states)
@@ -43,7 +43,7 @@ def integrator(model: Kernels, varied: bool) -> Compiled:
     # In w, states, costates and the integral of the running cost are the first column, variations the others.
     @njit()
     def integrated(start: float, end: float, steps: int, w: Array, p: Numbers, bounds: Numbers) -> Array:
-        """An arc; a step that meets or leaves a bound ends there, and the rest of it follows."""
+        """Integrate one arc; a step in which a bound is met or left is divided at that time."""
         sides, bare = np.empty(bounds_count), np.empty(rows + 1)
         for bound in range(bounds_count):
             sides[bound] = np.sign(distance(bound, start, w, p, bounds))
@@ -88,7 +88,7 @@ def integrator(model: Kernels, varied: bool) -> Compiled:
 
 @lru_cache(maxsize=16)
 def _stepper(model: Kernels, columns: int) -> Compiled:
-    """``(t, h, w, p, bounds) -> w`` one step later, with so many variations: loops of known length are quickest."""
+    """Return ``(t, h, w, p, bounds) -> w`` for one step with a number of variations, which is fixed for fast loops."""
     a, b, c = tableau()
     n, stages, width = len(model.spec.states), len(b), 1 + columns
     rows = 2 * n
@@ -137,7 +137,7 @@ def _stepper(model: Kernels, columns: int) -> Compiled:
 
 @lru_cache(maxsize=16)
 def _meeting(model: Kernels) -> Compiled:
-    """``(bound, side, t, h, w, p, bounds) -> h``: the part of a step after which a distance leaves its side of zero."""
+    """Return ``(bound, side, t, h, w, p, bounds) -> h``, the part of a step before a distance changes sign."""
     (_, distance), advanced = _distance(model, 1), _stepper(model, 0)
 
     @njit()
@@ -165,7 +165,7 @@ def _meeting(model: Kernels) -> Compiled:
 
 
 def _distance(model: Kernels, width: int) -> tuple[int, Compiled]:
-    """The number of bounds, and ``(bound, t, w, p, bounds)``: a row of ``ControlSet.excess``."""
+    """Return the number of bounds, and ``(bound, t, w, p, bounds)``, one row of ``ControlSet.excess``."""
     law, n, m = model.functions["control_law"], len(model.spec.states), len(model.spec.controls)
     vector, infinity = packed(n), float("inf")
     free = (-infinity,) * m + (infinity,) * m
@@ -188,7 +188,7 @@ def _distance(model: Kernels, width: int) -> tuple[int, Compiled]:
 
 @lru_cache
 def packed(count: int) -> Compiled:
-    """``(array, first, stride) -> tuple`` of so many elements: generated functions unpack tuples without loops."""
+    """Return ``(array, first, stride) -> tuple`` of `count` elements, since generated functions unpack tuples."""
 
     def none(array: Array, first: int, stride: int) -> Numbers:
         return ()
@@ -201,7 +201,7 @@ def packed(count: int) -> Compiled:
 
 
 def njit() -> Compiled:
-    """The decorator; divisions by zero give infinities as arrays do."""
+    """Return the compiling decorator; divisions by zero give infinities as for arrays."""
     import numba
 
     return numba.njit(error_model="numpy")

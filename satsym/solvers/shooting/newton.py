@@ -1,7 +1,7 @@
-"""Newton's method on the conditions that arcs meet and the boundary is kept, damped by the natural monotonicity test.
+"""Newton's method for continuity of arcs and boundary conditions, damped by the natural monotonicity test.
 
-The test compares simplified corrections, so it does not depend on how equations are scaled (Deuflhard, Newton
-Methods for Nonlinear Problems, 3.3 and 7.1).
+The test compares simplified corrections and therefore does not depend on the scaling of the equations (Deuflhard,
+Newton Methods for Nonlinear Problems, 3.3 and 7.1).
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from satsym.solvers.shooting.runge_kutta import ORDER
 Correction = tuple[Array, Array]
 
 TOLERANCE = 1e-12
-"""Size of the last correction."""
+"""Size of the last correction at which Newton's method has converged."""
 
 FLOOR = 1e-9
-"""Corrections below this that no longer shrink are rounding."""
+"""Size below which a correction that no longer shrinks is attributed to rounding."""
 
 SURE = 1e-4
-"""Corrections below this are taken whole."""
+"""Size below which corrections are applied without damping."""
 
 KEEP = 0.3
-"""Share of a positive state, and of a free duration, that a correction must leave."""
+"""Fraction of a positive state, and of a free duration, that a correction must leave."""
 
 SHORTEST = 1e-3
 MOST_STEPS = 30
@@ -36,36 +36,36 @@ MOST_STEPS = 30
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Where Newton ended."""
+    """Result of Newton's method."""
 
     arcs: Arcs
-    """The last ones."""
+    """The last arcs."""
     matching: Matching | None
-    """The last linear system, ``None`` where it failed."""
+    """The last linear system; ``None`` if the method failed."""
     iterations: int
     """Number of corrections."""
 
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """What is wrong with arcs that end there."""
+    """Residual of the shooting equations."""
 
     defects: Array
-    """Where each arc ends, less where the next one begins, shape (N, 2n)."""
+    """End of each arc minus the next node, shape (N, 2n)."""
     start: Array
     finish: Array
-    """Residuals at the boundary, shapes (n,) and (n + e,)."""
+    """Residuals of the initial and final conditions, shapes (n,) and (n + e,)."""
 
 
 def residual(arcs: Arcs, ends: Array) -> Residual:
-    """The residual of arcs with their ends, shape (2n, N)."""
+    """Return the residual of arcs with given ends, shape (2n, N)."""
     problem, nodes = arcs.problem, arcs.nodes
     start = nodes[: problem.states, 0] - problem.initial
     return Residual((ends - nodes[:, 1:]).T, start, problem.boundary(nodes[:, -1], arcs.theta))
 
 
 def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
-    """The linear system of a correction, and the residual.
+    """Return the linear system of a correction, and the residual.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
 
 
 def newton(arcs: Arcs, limits: Limits) -> Outcome:
-    """Newton from arcs with enough steps."""
+    """Return the result of Newton's method from arcs with a sufficient number of steps."""
     before = float("inf")
     for iteration in range(1, MOST_STEPS + 1):
         try:
@@ -102,9 +102,9 @@ def newton(arcs: Arcs, limits: Limits) -> Outcome:
 
 
 def doubled(arcs: Arcs, matching: Matching) -> tuple[Arcs, float]:
-    """Solved arcs with twice as many steps, corrected for these; and their error.
+    """Return converged arcs with twice as many steps, corrected for these, and their error.
 
-    It is estimated from that correction (Richardson), and from what is left to correct.
+    The error is estimated from that correction (Richardson) and from the remaining correction.
     """
     finer = arcs.with_steps(2 * arcs.steps)
     correction = _correction(matching, residual(finer, finer.ends()))
@@ -118,7 +118,10 @@ def _correction(matching: Matching, wrong: Residual) -> Correction:
 
 
 def _shortened(arcs: Arcs, correction: Correction, matching: Matching, size: float) -> Arcs | None:
-    """The arcs after the longest part of a correction, halving it, that passes the test; ``None`` if none does."""
+    """Return the arcs after the longest part of a correction that passes the test; ``None`` if none does.
+
+    The part is halved until it passes.
+    """
     length = within_domain(arcs, *correction)
     while length > SHORTEST:
         trial = arcs.moved(*correction, length)
@@ -131,7 +134,7 @@ def _shortened(arcs: Arcs, correction: Correction, matching: Matching, size: flo
 
 
 def within_domain(arcs: Arcs, nodes: Array, theta: Array) -> float:
-    """The longest part of a correction, at most all, that leaves positive states positive and the duration sane."""
+    """Return the largest fraction (at most one) of a correction that keeps positive states and the duration valid."""
     falls = [float((-nodes[:, i] / arcs.nodes[i]).max()) for i in arcs.problem.positive]
     if arcs.problem.free_time:
         falls.append(abs(float(theta[-1] / arcs.theta[-1])))

@@ -1,4 +1,4 @@
-"""One step of the explicit method of order 8 by Dormand and Prince, for many arcs at once."""
+"""One step of the explicit Runge-Kutta method of order 8 by Dormand and Prince, for many arcs at once."""
 
 from __future__ import annotations
 
@@ -16,23 +16,26 @@ ORDER = 8
 
 @lru_cache
 def tableau() -> tuple[Array, Array, Array]:
-    """Coefficients A, b, c of the 12 stages (Hairer, Norsett, Wanner, Solving Differential Equations I, II.5)."""
+    """Return the coefficients A, b, c of the 12 stages.
+
+    They are those of Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.5.
+    """
     from scipy.integrate import DOP853
 
     return DOP853.A, DOP853.B, DOP853.C
 
 
 def advance(slope: Slope, tau: Array, values: Array, width: Array) -> Array:
-    """The values one step later.
+    """Return the values after one step.
 
     Parameters
     ----------
     slope
-        Function of times and values.
+        Function of times and values that returns the time derivatives.
     tau, width
-        Where each step begins and how long it is, shape (M,).
+        Initial times and lengths of the steps, shape (M,).
     values
-        There, shape (..., M).
+        Initial values, shape (..., M).
     """
     a, b, c = tableau()
     stages = np.empty((len(b), *values.shape), values.dtype)

@@ -1,4 +1,4 @@
-"""Shooting from a cold start: enough arcs and steps, and within bounds nodes on the corners."""
+"""Shooting from a cold start: choice of arcs and steps and, within bounds, of nodes at the corners of the control."""
 
 from __future__ import annotations
 
@@ -25,16 +25,19 @@ from satsym.status import Status
 from satsym.wording import counted
 
 ACCURACY = 1e-11
-"""Error of an arc during Newton's method, at first. Twice as many steps, which make the answer, have a 256th of it."""
+"""Error of an arc during Newton's method, at first.
+
+The solution uses twice as many steps, whose error is smaller by the factor 256.
+"""
 
 REFINEMENTS = 3
-"""Times that every arc is halved where Newton fails."""
+"""Number of times that all arcs are halved if Newton's method fails."""
 
 FEWEST_ARCS = 10
-"""Arcs of a problem whose bounds are met."""
+"""Smallest number of arcs of a problem whose bounds are met."""
 
 SETTLING = 12
-"""Times that nodes are moved to the corners."""
+"""Largest number of times that nodes are moved to the corners."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -43,20 +46,20 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        With final states given, on the reference or free, and a final time that is given or free.
+        The instance. Final states may be given, on the reference or free, and the final time given or free.
     progress
-        Called after each iteration of the cold start, and each phase.
+        Function that is called after each iteration of the cold start, and each phase.
 
     Returns
     -------
     Solution
-        With status ``converged`` when the estimated error is within the instance's tolerance; it is as a rule
-        near the last digits, whatever that tolerance.
+        The status is ``converged`` if the estimated error is within the instance's tolerance. The error is usually near
+        rounding, independent of the tolerance.
 
     Raises
     ------
     BadInput
-        If the instance asks for compiled kernels and numba is not installed.
+        If the instance requests compiled kernels and numba is not installed.
     """
     if instance.solver.backend == "numba":
         instance = replace(instance, model=instance.model.compiled())
@@ -64,19 +67,24 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def without_guess(instance: Instance, limits: Limits) -> Extremal:
-    """The extremal to which a cold start leads; see :func:`satsym.solvers.two_point.from_cold_start`."""
+    """Return the extremal to which a cold start leads; see :func:`satsym.solvers.two_point.from_cold_start`."""
     return from_cold_start(instance, limits, _accurate)
 
 
 def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
-    """The extremal within bounds that is near a path of states and costates.
+    """Return the extremal within bounds near a path of states and costates.
 
-    Nodes are put on the corners that bounds cause, until these stand still; then the error decides on the steps.
+    Nodes are moved to the corners caused by bounds until these no longer change; then the error determines the number
+    of steps.
 
     Parameters
     ----------
+    problem
+        The two-point problem.
+    start
+        Path of states and costates.
     limits
-        When to stop, and the observer of the cost of what was found.
+        Limits of time, with an observer that is told the cost of the result.
     """
     tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
     met, mesh, total = corners(problem, start), start.mesh, 0
@@ -105,14 +113,14 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
 
 
 def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
-    """The extremal that arcs are, with their estimated error."""
+    """Return converged arcs, with their estimated error, as an extremal."""
     problem = arcs.problem
     message = f"estimated error {error:.0e} on {_said(arcs)}"
     return Extremal(problem, arcs, arcs.cost() * problem.scale.cost, Status.CONVERGED, message, iterations)
 
 
 def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-    """Make an extremal of low order without bounds an accurate one within them."""
+    """Return an accurate extremal within bounds from an extremal of low order without bounds."""
     bounded = inside(problem, start, start.found.curve, limits)
     steps = start.steps + bounded.iterations
     if bounded.reason is Reason.BLOCKED:
@@ -122,7 +130,7 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
 
 
 def _shot(problem: TwoPoint, start: Path, mesh: Array, accuracy: float, limits: Limits) -> Outcome:
-    """Newton from a path with nodes on a mesh, or on a finer one if it fails there."""
+    """Return the result of Newton's method from a path with nodes on a mesh, or on a finer mesh if it fails."""
     total = 0
     for _ in range(REFINEMENTS + 1):
         arcs = Arcs(problem, mesh, start(mesh), start.theta)
