@@ -1,1 +1,1 @@
-"""Motions under a given control or law, one or many at once."""
+"""Simulation of motions under a given control or control law, one or many at once."""

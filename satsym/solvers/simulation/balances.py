@@ -1,4 +1,4 @@
-"""What changes only by something from outside, whatever the controls do, such as the angular momentum of all bodies."""
+"""Balances: quantities that change only by external effects, whatever the controls, e.g. total angular momentum."""
 
 from __future__ import annotations
 
@@ -10,18 +10,20 @@ from satsym.solution import Invariant
 
 
 def balances(instance: Instance, times: Array, x: Array, u: Array) -> dict[str, Invariant]:
-    """Each balance of the model along a motion, less what came from outside.
+    """Return the balances of the model along a motion, with external effects subtracted.
 
     Parameters
     ----------
+    instance
+        The instance of the motion.
     times, x, u
-        Nodes (N+1,), states (n, N+1) and controls (m, N+1) there.
+        Nodes (N+1,), states (n, N+1) and controls (m, N+1) at the nodes.
 
     Returns
     -------
     dict
-        By name: the value at the initial state of the instance, which may lie before an impulse that `x` begins
-        after, and the largest departure from it.
+        For each balance by name: the value at the initial state of the instance, which may precede an impulse before
+        the first column of `x`, and the largest deviation from that value.
     """
     spec, p = instance.model.spec, instance.parameters
     if not spec.balances or not np.isfinite(x).all():
@@ -37,7 +39,7 @@ def balances(instance: Instance, times: Array, x: Array, u: Array) -> dict[str, 
 
 
 def _brought(times: Array, rate: Array) -> Array:
-    """The integral of a rate until each node; exactly nothing where there is none."""
+    """Return the integral of a rate up to each node; exactly zero for a zero rate."""
     if not rate.any() or len(times) < 3:
         return np.zeros_like(rate)
     from scipy.integrate import cumulative_simpson

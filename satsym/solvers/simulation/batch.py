@@ -1,8 +1,7 @@
-"""Many motions of one model at once: steps on arrays, a column for each motion.
+"""Simulation of many motions of one model at once, with one column of arrays for each motion.
 
-NumPy runs the generated batch form on blocks of columns, with buffers that are used again. Kernels that were compiled
-run the generated scalar form instead, as the inner loop over the columns of a block, which the compiler turns into
-vector instructions.
+NumPy evaluates the generated batch form on blocks of columns, with reused buffers. Compiled kernels run the generated
+scalar form instead, as the inner loop over the columns of a block, which the compiler turns into vector instructions.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from satsym.wording import shown, suggestion
 METHODS = ("RK4", "symplectic")
 
 COMPILED_BLOCK = 512
-"""Columns at a time for compiled code, to which calls cost nothing; on arrays they are more."""
+"""Number of columns that compiled code processes at a time; without overhead of calls, fewer than NumPy needs."""
 
 
 def simulate(
@@ -37,33 +36,35 @@ def simulate(
     u: ArrayLike | None = None,
     method: str = "RK4",
 ) -> Array:
-    """States of many motions at given times, with equal steps between each two of them.
+    """Return the states of many motions at given times, with equal steps between successive times.
 
     Parameters
     ----------
     kernels
-        Of the model; ``kernels.compiled()`` for compiled code, which waits for its compiler the first time.
+        Kernels of the model; ``kernels.compiled()`` for compiled code, whose first use takes the time of compilation.
     times
-        When states are wanted, shape (K,): the first is that of ``x0``. They may run backward.
+        Times at which states are returned, shape (K,), the first being that of ``x0``. They may decrease.
     x0
-        Starts, shape (n, N).
+        Initial states, shape (n, N).
     p
         Parameters, in the model's order; each a number or an array of shape (N,).
+    steps
+        Number of steps between successive times.
     u
-        Constant controls, shape (m,) or (m, N); none by default.
+        Constant controls, shape (m,) or (m, N); zero by default.
     method
-        One of :data:`METHODS`. ``"symplectic"``: kicks and drifts of sixth order, twelve evaluations a step, for
-        separable models without control.
+        One of :data:`METHODS`. ``"symplectic"`` is a composition of kicks and drifts of sixth order with twelve
+        evaluations in a step, for separable models without control.
 
     Returns
     -------
     array of shape (n, K, N)
-        Beyond a singularity nan or inf.
+        The states; nan or inf after a singularity.
 
     Raises
     ------
     BadInput
-        For arrays of other shapes, numbers that are not finite, no step, or a method that is not the model's.
+        For arrays of other shapes, numbers that are not finite, no step, or a method that the model does not support.
     """
     nodes, start, parameters, controls = _checked(kernels, times, x0, p, u)
     if steps < 1:
@@ -98,7 +99,7 @@ def simulate(
 def _checked(
     kernels: Kernels, times: ArrayLike, x0: ArrayLike, p: Sequence[ArrayLike], u: ArrayLike | None
 ) -> tuple[Array, Array, Array, Array]:
-    """Times, starts, parameters and controls, a column for each motion."""
+    """Return times, initial states, parameters and controls as arrays, with one column for each motion."""
     spec = kernels.spec
     nodes, start = np.asarray(times, float), np.asarray(x0, float)
     if nodes.ndim != 1 or not len(nodes):
@@ -116,7 +117,7 @@ def _checked(
 
 @lru_cache(maxsize=32)
 def _runge_kutta(kernels: Kernels) -> OnTape | _RungeKutta:
-    """Steps by RK4: on a tape where that is possible, which is written once."""
+    """Return an RK4 integrator, on an operation tape if that is possible; it is created once for each model."""
     try:
         return OnTape(kernels)
     except (Unsuited, BadInput):
@@ -124,7 +125,7 @@ def _runge_kutta(kernels: Kernels) -> OnTape | _RungeKutta:
 
 
 class _RungeKutta:
-    """RK4 with the generated batch form; buffers for one size of block."""
+    """RK4 integrator with the generated batch form and buffers for one size of block."""
 
     block = BLOCK
 
@@ -134,7 +135,7 @@ class _RungeKutta:
         self.stage = self.total = self.slope
 
     def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
-        """So many steps of size h from t, in place."""
+        """Advance y by a number of steps of size h from t, in place."""
         if self.slope.shape != y.shape:
             self.slope, self.stage, self.total = (np.empty(y.shape) for _ in range(3))
         slope, stage, total, f, parameters = self.slope, self.stage, self.total, self.dynamics, tuple(p)
@@ -156,7 +157,7 @@ class _RungeKutta:
 
 
 class _Kicks:
-    """Kicks and drifts with the generated batch form."""
+    """Symplectic integrator of kicks and drifts with the generated batch form."""
 
     block = BLOCK
 
@@ -167,7 +168,7 @@ class _Kicks:
         self.weights = tuple(zip(kicks, [*drifts, 0.0], strict=True))
 
     def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
-        """So many steps of size h, in place."""
+        """Advance y by a number of steps of size h, in place."""
         slope, q, v, parameters = np.empty(y.shape), self.coordinates, self.velocities, tuple(p)
         for _ in range(steps):
             for kick, drift in self.weights:
@@ -177,7 +178,7 @@ class _Kicks:
 
 
 def _rows(name: str, values: ArrayLike | Sequence[ArrayLike], count: int, columns: int) -> Array:
-    """A row for each component, shape (count, columns)."""
+    """Return one row for each component, shape (count, columns)."""
     if isinstance(values, np.ndarray) and values.dtype == float and values.shape == (count, columns):
         return values
     try:

@@ -1,7 +1,6 @@
-"""Long integrations in blocks of steps, with a look at the clock between them.
+"""Long integrations in blocks of steps, between which the time limit is checked.
 
-What generated loops compute does not depend on where they are broken off, so that the blocks show in nothing but the
-order in which the running cost is summed up.
+The results of generated loops do not depend on the blocks, except for the order in which the running cost is added.
 """
 
 from __future__ import annotations
@@ -20,12 +19,12 @@ Row = Sequence[float]
 def forward(
     model: Kernels, nodes: Array, x0: Row, u: Array, u_mid: Array, p: Row, limits: Limits | None
 ) -> tuple[Array, Array, float]:
-    """As :meth:`satsym.kernels.core.Kernels.forward`.
+    """Return the result of :meth:`satsym.kernels.core.Kernels.forward`, computed in blocks.
 
     Raises
     ------
     TimeUp
-        If the time is over between two blocks.
+        If the time limit is exceeded between two blocks.
     """
     steps, start, total = len(nodes) - 1, x0, 0.0
     if steps <= BLOCK or limits is None:
@@ -50,12 +49,14 @@ def backward(
     p: Row,
     limits: Limits | None,
 ) -> tuple[Array, Array]:
-    """As :meth:`satsym.kernels.core.Kernels.backward`; motion and control at nodes and midpoints.
+    """Return the result of :meth:`satsym.kernels.core.Kernels.backward`, computed in blocks.
+
+    Motion and control are given at nodes and midpoints.
 
     Raises
     ------
     TimeUp
-        If the time is over between two blocks.
+        If the time limit is exceeded between two blocks.
     """
     (x, x_mid), (u, u_mid), steps, end = motion, control, len(nodes) - 1, lam_f
     if steps <= BLOCK or limits is None:

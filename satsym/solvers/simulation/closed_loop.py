@@ -1,4 +1,4 @@
-"""The motion under a control law, which may have corners: SciPy's DOP853, by small tolerances."""
+"""Simulation of motions under a control law, which may have corners, by SciPy's DOP853 with small tolerances."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from satsym.solvers.simulation.stability import fastest, stable_steps
 Control: TypeAlias = Callable[[float, Sequence[float]], Sequence[float]]
 
 MOST_EVALUATIONS = 100_000
-"""Evaluations of rates in one run, besides those that its fastest motion needs; more are needed near a pole."""
+"""Largest number of evaluations in one run, in addition to those for the fastest mode; exceeded only near a pole."""
 
 FOR_STABILITY = 4
-"""Evaluations of DOP853 while the fastest motion decays by a factor e: twice what its stability needs."""
+"""Number of evaluations of DOP853 per time constant of the fastest mode, twice as many as stability requires."""
 
 MOST_FOR_SIZES = 2**17
-"""Steps in which it is found out how large states become."""
+"""Largest number of steps in the run that determines the magnitudes of the states."""
 
 EVERY = 256
-"""Evaluations between two looks at the clock."""
+"""Number of evaluations between two checks of the time limit."""
 
 
 @dataclass(frozen=True)
@@ -37,24 +37,24 @@ class Law:
     """A control law."""
 
     name: str
-    """As results call it."""
+    """Name of the law in results."""
     control: Control
-    """The controls at a time and state, in the model's order; bounds are not its business."""
+    """Function of time and state that returns the controls in the model's order, without regard to bounds."""
     gain: Array | None = None
-    """K of shape (m, n), where the law is u = -K x."""
+    """Gain K of shape (m, n) if the law is u = -K x, otherwise ``None``."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A motion under a law."""
+    """A motion under a control law."""
 
     x: Array
     u: Array
-    """States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end."""
+    """States (n, N+1) and controls (m, N+1) at the nodes; NaN after an early end."""
     steps: int
-    """Steps that the integrator took."""
+    """Number of steps of the integrator."""
     left_domain: bool
-    """Whether a state that must be positive vanished and so ended it."""
+    """Whether the motion ended because a state that must be positive became zero."""
 
 
 def simulate(
@@ -65,21 +65,27 @@ def simulate(
     dynamics: Function | None = None,
     limits: Limits | None = None,
 ) -> Run:
-    """Follow the motion under the admissible controls next to the law's.
+    """Simulate the motion under a control law whose controls are projected to the control set.
 
     Parameters
     ----------
+    instance
+        The instance.
+    law
+        The control law.
     nodes
         Times, shape (N+1,).
     tolerance
-        Of each step, relative to the size of each state.
+        Tolerance of each step, relative to the magnitude of each state.
     dynamics
-        Rates of change of the states, if not those of the model: a function of t, x, u and p on floats.
+        Function of t, x, u and p that returns the time derivatives of the states; by default that of the model.
+    limits
+        Limits of time.
 
     Raises
     ------
     TimeUp
-        If the time is over.
+        If the time limit is exceeded.
     """
     from scipy.integrate import solve_ivp
 
@@ -119,7 +125,10 @@ def simulate(
 def _rates(
     instance: Instance, law: Law, dynamics: Function, most: int, limits: Limits | None
 ) -> Callable[[float, Array], list[float]]:
-    """Rates of change of the states by time and states; NaN where they have none, and from the last evaluation on."""
+    """Return the right-hand side as a function of time and states.
+
+    NaN where it is undefined, and after too many calls.
+    """
     p, within, count = instance.parameters, instance.control_set.nearest(), 0
 
     def rates(t: float, x: Array) -> list[float]:
@@ -139,7 +148,7 @@ def _rates(
 
 
 def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:
-    """What counts as large for each state: how large it becomes without control."""
+    """Return the reference magnitudes of the states, their largest magnitudes without control."""
     steps = stable_steps(instance, len(nodes) - 1, MOST_FOR_SIZES)
     nodes = np.linspace(nodes[0], nodes[-1], steps + 1) if steps >= len(nodes) else nodes
     rest = np.zeros((len(instance.model.spec.controls), len(nodes)))

@@ -1,8 +1,8 @@
-"""Integration to the last digits: extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
+"""Integration to rounding accuracy by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
 
-Used to check solutions by means other than the solver's own, so it shares nothing with collocation. Its order
-and step size adapt, and it evaluates nothing but the rates (Hairer, Norsett, Wanner, Solving Ordinary
-Differential Equations I, II.9). The library's own integrators take longer to import than a solution to check.
+It is used to check solutions independently of the solvers and shares nothing with collocation. Order and step size are
+adaptive, and only the right-hand side is evaluated (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
+II.9). The integrators of SciPy take longer to import than a solution takes to check.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
 """Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
 
 SAFETY, SMALLEST_CHANGE, LARGEST_CHANGE = 0.7, 0.1, 4.0
-"""Bounds of the next step: share of what the error allows, and the least and the largest change."""
+"""Step-size control: safety factor, smallest factor and largest factor of the next step."""
 
 MOST_STEPS = 100_000
 
 
 class NotFinite(Exception):
-    """The solution ceases to be finite, or the step size goes to zero."""
+    """The solution is not finite, or the step size tends to zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Values at the ends of the steps that were taken."""
+    """Values at the ends of the integration steps."""
 
     times: Array
-    """Shape (K,), from the start to the end."""
+    """Times from start to end, shape (K,)."""
     values: Array
-    """Shape (K, d)."""
+    """Values at these times, shape (K, d)."""
     columns: int = len(SUBSTEPS)
-    """Columns of the extrapolation table that the steps needed at most."""
+    """Largest number of columns of the extrapolation table that a step needed."""
 
     @property
     def end(self) -> Array:
@@ -52,32 +52,32 @@ class Trajectory:
 def integrate(
     rates: Rates, times: Array, start: Array, tolerance: float, size: Array, first: float = 0.25
 ) -> list[Trajectory]:
-    """Integrate y' = rates(t, y) through given times; each is met exactly, as a corner must be.
+    """Integrate y' = rates(t, y) through given times, at each of which a step ends, as is needed at corners.
 
     Parameters
     ----------
     rates
-        Function of time and value, shape (d,).
+        Function of time and value that returns the time derivative, shape (d,).
     times
-        Start, stops, end: shape (S+1,), monotone.
+        Initial time, intermediate times and final time in monotonic order, shape (S+1,).
     start
-        Value at the first, shape (d,).
+        Initial value, shape (d,).
     tolerance
         Largest error of a step, relative to ``size``.
     size
-        Typical sizes of the components, shape (d,).
+        Typical magnitudes of the components, shape (d,).
     first
-        Length of the first step that is tried, as a share of the first piece.
+        Length of the first step that is tried, as a fraction of the first piece.
 
     Returns
     -------
     list of Trajectory
-        One for each of the S pieces.
+        One trajectory for each of the S pieces.
 
     Raises
     ------
     NotFinite
-        If the solution does not reach the end.
+        If the solution does not reach the final time.
     """
     pieces, value = [], np.asarray(start, dtype=float)
     step = first * float(times[1] - times[0])
@@ -89,23 +89,23 @@ def integrate(
 
 
 def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)) -> Array:
-    """One extrapolated step for many starts at once, each of its own length; of order twice the columns.
+    """Return the values after one extrapolated step for many initial values, each with its own step size.
 
     Parameters
     ----------
     rates
         Function of times (M,) and values (d, M).
     t, y
-        Starts, shapes (M,) and (d, M).
+        Initial times and values, shapes (M,) and (d, M).
     h
-        Lengths, shape (M,).
+        Step sizes, shape (M,).
     columns
-        Of the extrapolation table.
+        Number of columns of the extrapolation table; the order is twice this number.
 
     Returns
     -------
     Array
-        Values at the ends, shape (d, M).
+        Values after the step, shape (d, M).
     """
     return leap_and_error(rates, t, y, h, columns)[0]
 
@@ -113,7 +113,7 @@ def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, col
 def leap_and_error(
     rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)
 ) -> tuple[Array, Array]:
-    """Values at the ends with an estimate of their errors, from the next lower order, both of shape (d, M)."""
+    """Return values after one step and an error estimate from the next lower order, both of shape (d, M)."""
     return next(islice(leaps(rates, t, y, h), columns - 1, None))
 
 
@@ -125,21 +125,23 @@ def leap_varied(
     h: Array,
     columns: int = len(SUBSTEPS),
 ) -> tuple[Array, Array, Array]:
-    """Values at the ends and how they follow their starts by the rule for the variations, with the error of those.
+    """Return values after one step, their derivatives with respect to the initial values, and errors of these.
 
     Parameters
     ----------
+    rates, t, y, h, columns
+        As for :func:`leap`.
     slopes
-        Derivatives of the rates at times (K,) and values (d, K), shape (K, d, d): asked for once, at all places.
+        Jacobians of the rates at times (K,) and values (d, K), shape (K, d, d), evaluated once for all points.
 
     Returns
     -------
     Array
-        Values at the ends, shape (d, M).
+        Values after the step, shape (d, M).
     Array
-        Their derivatives by the starts, shape (M, d, d).
+        Their derivatives with respect to the initial values, shape (M, d, d).
     Array
-        By how much these differ from those of the next lower order, shape (M, d, d).
+        Difference of these from those of the next lower order, shape (M, d, d).
     """
     places: list[tuple[Array, Array]] = []
 
@@ -162,7 +164,10 @@ def leap_varied(
 
 @lru_cache
 def _weights(columns: int) -> Array:
-    """Weights of the columns in the last entry of the table and in that of the next lower order (Aitken, Neville)."""
+    """Return the weights of the columns in the last entry of the table, and in that of the next lower order.
+
+    They follow from the recursion of Aitken and Neville.
+    """
     squares = np.array(SUBSTEPS[:columns], dtype=float) ** 2
     found = np.zeros((2, columns))
     for row, own in enumerate((squares, squares[1:])):
@@ -174,13 +179,15 @@ def _weights(columns: int) -> Array:
 def leaps(
     rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, together: int = 1
 ) -> Iterator[tuple[Array, Array]]:
-    """Values at the ends with one column, two, and so on; the first has an infinite error, with nothing to compare.
+    """Yield values after one step with one column, two columns, and so on, each with its error; the first is infinite.
 
     Parameters
     ----------
+    rates, t, y, h
+        As for :func:`leap`.
     together
-        Columns that are computed side by side, which is quicker where starts are few: rates are asked for at several
-        times as many places then.
+        Number of columns that are computed simultaneously, which is faster for few initial values, because rates are
+        evaluated at more points at a time.
     """
     slope = rates(t, y)
     first: Sequence[Array] = ()
@@ -231,7 +238,7 @@ def _piece(
 def _extrapolated(
     rates: Rates, t: float, y: Array, h: float, tolerance: float, size: Array
 ) -> tuple[Array, float, int]:
-    """One extrapolated step; its error in units of the tolerance, and the column that was reached."""
+    """Return one extrapolated step, its error in units of the tolerance, and the column that was reached."""
     table: list[Array] = []
     slope = rates(t, y)
     error, best = float("inf"), y
@@ -252,7 +259,7 @@ def _extrapolated(
 
 
 def _midpoint(rates: Callable[[Any, Array], Array], t: Any, y: Array, slope: Array, h: Any, count: int) -> Array:
-    """The modified midpoint rule with that many steps, without its smoothing step."""
+    """Return the result of the modified midpoint rule with `count` steps, without its smoothing step."""
     width = h / count
     before, now = y, y + width * slope
     for i in range(1, count):
@@ -261,14 +268,16 @@ def _midpoint(rates: Callable[[Any, Array], Array], t: Any, y: Array, slope: Arr
 
 
 def _midpoints(rates: Callable[[int, Array], Array], begin: Array, change: Array, width: Array) -> list[Array]:
-    """Midpoint values of the first columns of the table side by side.
+    """Return the midpoint values of the first columns of the table, computed simultaneously.
 
     Parameters
     ----------
     rates
-        Function of the number of the step and of the values of those columns that have so many, as a new array.
+        Function of the index of the step and of the values of the columns with that many steps; returns a new array.
     begin, change
-        Values at the start, and by how much they change in the first step, a column of the table each.
+        Initial values, and their changes in the first step, for each column of the table.
+    width
+        Lengths of the midpoint steps of each column.
     """
     before: Array = begin
     now: Array = begin + change

@@ -1,4 +1,4 @@
-"""Simulation: the motion of an instance from its initial state, as accurate as its tolerance asks."""
+"""Simulation of an instance from its initial state, to the accuracy of its tolerance."""
 
 from __future__ import annotations
 
@@ -19,53 +19,62 @@ from satsym.solvers.simulation.stability import propagated, stable_steps
 from satsym.status import BadInput, Status
 
 RICHARDSON = 2.0**4 - 1.0
-"""The distance between two runs of RK4, one with half the steps, is so many times the error of the better one."""
+"""Ratio of the difference between two runs of RK4, one with half the steps, to the error of the better run."""
 MARGIN = 0.1
-"""Share of the tolerance that the estimated error may take: estimates can be low."""
+"""Fraction of the tolerance that the estimated error may reach, since estimates can be too small."""
 
 TIGHTER, SMALLEST_TOLERANCE = 0.01, 3e-14
-"""Under a law: the tolerance of a run relative to that before, and the least that is more than rounding."""
+"""Factor of the tolerance from one run under a control law to the next, and the smallest tolerance above rounding."""
 GAINED = 10.0
-"""So many times is such a run better at least; nearly by as much as its tolerance, where the law has no corners."""
+"""Factor by which such a run is at least better than the one before.
+
+The factor is nearly that of the tolerances if the law has no corners.
+"""
 
 ROUNDING = 100.0 * float(np.finfo(float).eps)
-"""Relative change of the initial state whose effect is taken for that of rounding. More steps do not make the error
-smaller, and a state that is small because large terms cancel (the radial velocity on a nearly circular orbit) feels it.
+"""Relative change of the initial state whose effect is attributed to rounding.
+
+More steps do not reduce such an error. It matters for a state that is small because large terms cancel, like the radial
+velocity on a nearly circular orbit.
 """
 
 MOST_STEPS = 2**20
-"""More are used only where the instance asks for more than half as many itself."""
+"""Largest number of steps, unless the instance itself requests more than half as many."""
 
 HOPELESS = 64
-"""Times the given steps at which a motion outside the domain is given up: until then the steps may be too long."""
+"""Multiple of the given number of steps at which a motion outside the domain is abandoned.
+
+Before, the motion may have left the domain only because steps were too long.
+"""
 
 FASTEST = 2.0**6
-"""So many times does half the step make the error smaller at most: sixteen times in the end, more on the way there. A
-run that could not become accurate enough even so, before the steps are too many, is the last: motions that come close
-to a singularity would take longest, to no avail.
+"""Largest factor by which halving the step can reduce the error: 16 asymptotically, more before.
+
+If even this factor does not suffice before the largest number of steps, the run is the last one. Otherwise motions near
+a singularity would take very long without result.
 """
 
 
 @np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance, law: Law | None = None) -> Simulation:
-    """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
+    """Simulate an instance with RK4, or under a control law with DOP853, until two runs agree.
 
-    Where the given steps are too long for the fastest motion, a linear motion follows from e^(At), and any other is
-    integrated with DOP853.
+    If the given steps are too long for the fastest mode, a linear motion is computed from e^(At), and any other motion
+    is integrated with DOP853.
 
     Parameters
     ----------
     instance
-        With a given final time.
+        An instance with a given final time.
     law
-        What controls it; by default there is no control, or the admissible one next to none.
+        Control law; by default the controls are zero, or the admissible controls nearest to zero.
 
     Returns
     -------
     Simulation
-        At the instance's number of steps; ``metrics`` has the steps that were needed and the estimated
-        error, relative to the size of each state or, where more, to the size at which rounding alone
-        causes that error.
+        The motion at the instance's number of steps. ``metrics`` contains the number of steps that were needed and the
+        estimated error, relative to the magnitude of each state or, if larger, to the magnitude at which rounding alone
+        causes this error.
 
     Raises
     ------
@@ -109,7 +118,7 @@ def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Simulatio
 
 
 def _propagated(instance: Instance, law: Law | None, times: Array) -> tuple[Array, Array, float] | None:
-    """States, controls and estimated error of a linear motion under a linear law; ``None`` for others."""
+    """Return states, controls and estimated error of a linear motion under a linear law; ``None`` for other motions."""
     if law is not None and law.gain is None:
         return None
     found = propagated(instance, times, law.gain if law else None)
@@ -121,18 +130,18 @@ def _propagated(instance: Instance, law: Law | None, times: Array) -> tuple[Arra
 
 
 def _idle(instance: Instance) -> Law:
-    """No control."""
+    """Return the control law without control."""
     rest = [0.0] * len(instance.model.spec.controls)
     return Law("none", lambda t, x: rest)
 
 
 def _control(instance: Instance) -> Array:
-    """No control, or the admissible one next to it; shape (m, 1)."""
+    """Return zero controls, or the admissible controls nearest to zero, shape (m, 1)."""
     return instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))
 
 
 def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float]:
-    """States at the nodes by RK4, halving the step until two runs agree; steps; and the estimated error."""
+    """Return the states at the nodes by RK4, with steps halved until two runs agree; number of steps; and error."""
     coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
     steps, x, error = coarse_steps, _fly(instance, coarse_steps, limits), float("nan")
     most = max(MOST_STEPS, 2 * coarse_steps)
@@ -153,7 +162,7 @@ def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float
 
 
 def _controlled(instance: Instance, law: Law, times: Array, limits: Limits) -> tuple[closed_loop.Run, float]:
-    """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
+    """Return the motion under a law, with tolerances reduced until two runs agree, and the estimated error."""
     sufficient = MARGIN * instance.solver.tolerance
     tolerance, error = sufficient, float("nan")
     run = closed_loop.simulate(instance, law, times, tolerance, limits=limits)
@@ -182,7 +191,7 @@ def _sound(instance: Instance, x: Array) -> bool:
 
 
 def _rounding(instance: Instance, x: Array, steps: int, limits: Limits) -> Array:
-    """What rounding can do to each state, shape (n, 1)."""
+    """Return the effect of rounding on each state, shape (n, 1)."""
     nudged = replace(instance, initial=tuple(value * (1.0 + ROUNDING) for value in instance.initial))
     with np.errstate(invalid="ignore"):
         effect: Array = np.abs(_fly(nudged, steps, limits) - x).max(axis=1, keepdims=True)
@@ -190,7 +199,7 @@ def _rounding(instance: Instance, x: Array, steps: int, limits: Limits) -> Array
 
 
 def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float:
-    """Distance between two runs relative to the size of each state, or a least size."""
+    """Return the difference of two runs, relative to the magnitude of each state or a least magnitude."""
     with np.errstate(invalid="ignore"):
         size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.maximum(least, np.finfo(float).tiny))
         return float((np.abs(coarse - fine) / size).max())
@@ -228,7 +237,7 @@ def _invariants(instance: Instance, times: Array, x: Array) -> dict[str, Invaria
 
 
 def _metrics(instance: Instance, x: Array) -> dict[str, float]:
-    """Extremes of each state, and how far from the reference the motion ends."""
+    """Return the extrema of each state, and the deviation of the final state from the reference."""
     spec = instance.model.spec
     found: dict[str, float] = {}
     for name, row in zip(spec.state_names, x, strict=True):

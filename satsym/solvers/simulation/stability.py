@@ -1,4 +1,4 @@
-"""How many steps the fastest motion of a model asks for, and linear motions for which they would be too many."""
+"""Number of steps that the fastest mode of a model requires, and exact propagation of linear motions."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 
 STABLE = 2.0
-"""RK4 is stable for decaying motions whose rate, times the step, is less; for oscillations nearly up to 2.8."""
+"""Largest product of step and decay rate at which RK4 is stable; for oscillations nearly 2.8."""
 
 
 def fastest(instance: Instance) -> float:
-    """The magnitude of the fastest eigenvalue that does not grow, at the initial state without control."""
+    """Return the magnitude of the fastest eigenvalue that does not grow, at the initial state without control."""
     model, n = instance.model, len(instance.initial)
     try:
         entries = model.jacobian_x(
@@ -26,7 +26,7 @@ def fastest(instance: Instance) -> float:
 
 
 def stable_steps(instance: Instance, steps: int, most: int) -> int:
-    """So many steps, or as many times 2 as RK4 needs not to blow the fastest motion up; no more than `most`."""
+    """Return the given number of steps, doubled until RK4 is stable for the fastest mode, but at most `most`."""
     assert instance.tf is not None
     rate = fastest(instance) * abs(instance.tf - instance.t0)
     while rate > STABLE * steps and 2 * steps <= most:
@@ -35,18 +35,22 @@ def stable_steps(instance: Instance, steps: int, most: int) -> int:
 
 
 def propagated(instance: Instance, nodes: Array, gain: Array | None) -> tuple[Array, Array] | None:
-    """States of a linear motion at equidistant nodes, by e^(Ah) in two steps, and in one.
+    """Return the states of a linear motion at equidistant nodes, by e^(Ah) in two half steps, and in one step.
 
     Parameters
     ----------
+    instance
+        The instance.
+    nodes
+        Equidistant nodes, shape (N+1,).
     gain
-        Of the law u = -K x, shape (m, n); by default there is no control.
+        Gain of the law u = -K x, shape (m, n); by default there is no control.
 
     Returns
     -------
     (x, coarser) or None
-        Shapes (n, N+1); ``None`` for a motion that is not linear with constant coefficients
-        and unbounded controls.
+        Both results, shapes (n, N+1); ``None`` if the motion is not linear with constant coefficients and unbounded
+        controls.
     """
     from scipy.linalg import expm
 

@@ -1,4 +1,4 @@
-"""Many motions of one instance at once, each under controls of its own."""
+"""Simulation of many motions of one instance at once, each under its own controls."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from satsym.instance import Instance
 
 
 def costs_together(instance: Instance, controls: Array, lasting: Array) -> Array:
-    """Costs of S motions from the initial state, shape (S,); infinite where a motion leaves its domain.
+    """Return the costs of S motions from the initial state, shape (S,); infinite if a motion leaves its domain.
 
-    They are simulated all at once by the classical Runge-Kutta method; controls are cut to their bounds.
+    All motions are integrated at once by the classical Runge-Kutta method; controls are projected to their bounds.
 
     Parameters
     ----------
+    instance
+        The instance.
     controls
-        At the nodes and midpoints of N steps, shape (m, 2 N + 1, S).
+        Controls at the nodes and midpoints of N steps, shape (m, 2 N + 1, S).
     lasting
         Durations, shape (S,).
     """
@@ -47,7 +49,7 @@ def costs_together(instance: Instance, controls: Array, lasting: Array) -> Array
 
 
 def _terminal_cost(instance: Instance, t: float, end: Array) -> float:
-    """The cost of an end; infinite where no float holds it."""
+    """Return the terminal cost of a final state; infinite if it overflows."""
     try:
         return instance.model.terminal_cost(t, tuple(end.tolist()), instance.parameters)
     except OverflowError:
