@@ -1,1 +1,1 @@
-"""From a cold start to an extremal: initial guesses, and paths of easier problems."""
+"""Cold starts: initial guesses, and sequences of easier problems that lead to an extremal."""

@@ -1,4 +1,4 @@
-"""The extremal next to states and costates that are nearly one, by Newton's method with the law itself."""
+"""Newton's method with the control law itself, from states and costates that are nearly an extremal."""
 
 from __future__ import annotations
 
@@ -24,19 +24,21 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 
 MESHES = (30, 60, 120)
-"""Intervals that are tried."""
+"""Numbers of intervals of the meshes that are tried."""
 
 SAMPLES = 401
-"""Values of a guess."""
+"""Number of values at which a guess is sampled."""
 
 
 def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
-    """The extremal, with nodes at jumps of its control; ``None`` where there is none in the domain.
+    """Return the extremal near a guess, with nodes at jumps of its control; ``None`` if none is found in the domain.
 
     Parameters
     ----------
+    problem
+        The two-point problem, with its duration.
     z
-        Scaled, at evenly spaced times, shape (2n, M); the duration is the problem's.
+        Scaled states and costates at equidistant times, shape (2n, M).
     """
     tau = np.linspace(0.0, 1.0, z.shape[1])
     for intervals in MESHES:
@@ -53,7 +55,7 @@ def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
 
 
 def _settled(problem: TwoPoint, z: Array, limits: Limits) -> Attempt | None:
-    """The extremal with nodes where bounds are met; ``None`` where these do not stand still."""
+    """Return the extremal with nodes where bounds are met; ``None`` if these times do not settle."""
     tau = np.linspace(0.0, 1.0, z.shape[1])
     curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
     found = tried(lambda: settled(problem, curve, STAGES, max(len(curve.mesh) - 1, MESHES[0]), limits))
@@ -63,7 +65,7 @@ def _settled(problem: TwoPoint, z: Array, limits: Limits) -> Attempt | None:
 
 
 def from_guess(instance: Instance, limits: Limits) -> tuple[TwoPoint, Start] | None:
-    """The problem and the extremal next to a guess of all states and costates; ``None`` where that is not guessed."""
+    """Return the problem and the extremal near a complete guess of states and costates; ``None`` if there is none."""
     names, guess = instance.model.spec.state_names, instance.guess
     end = instance.tf_guess if instance.tf is None else instance.tf
     if end is None or not all(name in guess.state and name in guess.costate for name in names):

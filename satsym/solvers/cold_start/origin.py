@@ -1,4 +1,4 @@
-"""From where extremals are found, and one that was, with that."""
+"""Origins of extremals: the initial guess from which an extremal was found."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from satsym.solvers.collocation.attempt import Attempt
 
 
 class Origin(str, Enum):
-    """From where an extremal was found, in the words of messages."""
+    """The initial guess from which an extremal was found, in the words of messages."""
 
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
@@ -23,17 +23,17 @@ class Start:
     """An extremal of low order from which a method starts."""
 
     found: Attempt
-    """The cheapest minimum, or the last attempt, and why that is none."""
+    """The minimum of least cost, or otherwise the last attempt with the reason why it failed."""
     origin: Origin
-    """From where it was found."""
+    """The initial guess from which the extremal was found."""
     steps: int
-    """Steps of all attempts."""
+    """Number of steps of all attempts."""
     bounded: bool = False
-    """Whether it was looked for within the bounds at once."""
+    """Whether bounds were imposed from the beginning."""
     saddle: Attempt | None = None
-    """An extremal that is no minimum, where no minimum was found."""
+    """An extremal that is not a minimum, if no minimum was found."""
 
     @property
     def named(self) -> str:
-        """The origin in words."""
+        """The origin in the words of messages."""
         return self.origin.value

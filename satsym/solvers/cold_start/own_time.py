@@ -1,4 +1,4 @@
-"""Time scales of an instance: of its motion, and of what its states are to change by and how quickly they can."""
+"""Time scales of an instance, from its fastest mode or from the required changes and possible rates of its states."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from satsym.solvers.collocation.scaling import NO_SLOPE
 from satsym.solvers.control.regularised import sloping
 
 STEP = 1e-6
-"""By which a state is moved along its rate to see its second derivative, relative to what it is to change by."""
+"""Step of the finite difference for second derivatives, relative to the required change of the states."""
 
 SLOWEST = 1e4
-"""Times the quickest state's time beyond which a time comes of rounding."""
+"""Ratio to the shortest time of all states above which a time is attributed to rounding and ignored."""
 
 
 def own_time(instance: Instance) -> float | None:
-    """The time that the slowest state takes for its way at its quickest, roughly; ``None`` where nothing tells it.
+    """Return an estimate of the time in which the slowest state can reach its final value; ``None`` if unknown.
 
-    A state has so far to go, ``d``, as given final states are from the initial ones; at the start it has a rate ``v``
-    and a second derivative ``a``, without controls and at each of their finite bounds. It takes the least of all
-    ``|d/v|`` and ``sqrt|d/a|``.
+    A state has to change by ``d``, from its initial to its given final value. At the initial time it has the rate ``v``
+    and the second derivative ``a``, without controls and at each of their finite bounds. Its time is the smallest of
+    all values ``|d/v|`` and ``sqrt|d/a|``.
     """
     names, start = instance.model.spec.state_names, np.array(instance.initial)
     goal = [instance.final.get(name) for name in names]
@@ -42,9 +42,9 @@ def own_time(instance: Instance) -> float | None:
 
 
 def time_scale(instance: Instance) -> float:
-    """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control.
+    """Return the time scale of the fastest mode, 1/|eigenvalue| of f_x at the initial time without control.
 
-    Where these are zero, what the instance's own numbers tell; one if they tell nothing.
+    If all eigenvalues are zero, the result is :func:`own_time`, or one if that is unknown.
     """
     n = len(instance.initial)
     none = np.zeros((n, 1))
@@ -59,7 +59,7 @@ def time_scale(instance: Instance) -> float:
 
 
 def _extremes(instance: Instance) -> Array:
-    """No controls, and each at each of its finite bounds, as far as that is admissible, a column each."""
+    """Return zero controls, and each control at each of its finite bounds, projected to the control set, as columns."""
     count = len(instance.model.spec.controls)
     columns = [np.zeros(count)]
     for bounds in instance.control_set.around(count):
@@ -70,7 +70,7 @@ def _extremes(instance: Instance) -> Array:
 
 
 def _rates(instance: Instance, later: float, x: Array, u: Array) -> Array:
-    """Rates of change of states after a while, a column for each of the controls."""
+    """Return the time derivatives of the states at a later time, one column for each column of controls."""
     columns = u.shape[1]
     given = np.full(columns, instance.t0 + later), np.broadcast_to(x, (len(x), columns)).copy(), u
     return np.asarray(instance.model.dynamics_batch(*given, instance.parameters))

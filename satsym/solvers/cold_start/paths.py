@@ -1,4 +1,4 @@
-"""Guesses of the states: straight lines, and motions without control."""
+"""Initial guesses of the states: straight lines, and motions without control or under a guessed control."""
 
 from __future__ import annotations
 
@@ -16,20 +16,23 @@ from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.failures import FAILURES
 
 States = Callable[[Array], Array]
-"""Scaled states, shape (n, M), at M times tau in [0, 1]."""
+"""Function of M times tau in [0, 1] that returns scaled states, shape (n, M)."""
 
 POINTS = 41
-"""Points of a path at which the mesh is laid."""
+"""Number of points of a guess from which the mesh is computed."""
 
 STEPS = 4000
-"""RK4 steps of a motion under a control that is guessed, and at most of one without control."""
+"""Number of RK4 steps of a motion under a guessed control, and largest number for a motion without control."""
 
 FEWEST, QUICK = 400, 20.0
-"""RK4 steps of a motion without control at least, and in the time in which its quickest mode turns by one radian."""
+"""Smallest number of RK4 steps of a motion without control, and number per radian of its fastest mode."""
 
 
 def first(problem: TwoPoint) -> States:
-    """Where to begin: as guessed, else on the straight line to the end, or where that is free without control."""
+    """Return the initial guess of the states: as given, or a straight line, or the motion without control.
+
+    The straight line leads to the given final state; without one, the motion without control is used.
+    """
     coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
     path = _under_guess(problem) or coasting or _line(problem)
     guessed, names = problem.instance.guess.state, problem.instance.model.spec.state_names
@@ -46,12 +49,14 @@ def first(problem: TwoPoint) -> States:
 
 
 def start(problem: TwoPoint, path: States | None = None) -> Curve:
-    """Where to begin as a curve, with the costates that are guessed.
+    """Return the initial guess as a curve, with the costates that are given.
 
     Parameters
     ----------
+    problem
+        The two-point problem.
     path
-        :func:`first`, if that is known.
+        Result of :func:`first`, if it is known.
     """
     begun, n = curve(problem, path or first(problem)), problem.states
     times = stage_times(begun.mesh, STAGES)
@@ -64,25 +69,25 @@ def start(problem: TwoPoint, path: States | None = None) -> Curve:
 
 
 def series(values: Sequence[float], tau: Array) -> Array:
-    """Values evenly spaced over [0, 1], straight lines between."""
+    """Return the linear interpolation at `tau` of values that are equidistant in [0, 1]."""
     found: Array = np.interp(tau, np.linspace(0.0, 1.0, len(values)), values)
     return found
 
 
 def through(problem: TwoPoint, states: Array) -> States:
-    """The path along states at evenly spaced times, shape (n, N + 1)."""
+    """Return the linear interpolation of states at equidistant times, shape (n, N + 1)."""
     nodes, scaled = np.linspace(0.0, 1.0, states.shape[1]), states / problem.scale.state[:, None]
     return lambda tau: np.array([np.interp(tau, nodes, row) for row in scaled])
 
 
 def curve(problem: TwoPoint, path: States) -> Curve:
-    """A path as a curve without costates, on a mesh that resolves it."""
+    """Return a guess of the states as a curve with zero costates, on a mesh that resolves it."""
     tau = np.linspace(0.0, 1.0, POINTS)
     return on(problem, path, meshes.along(problem, tau, path(tau), problem.theta))
 
 
 def on(problem: TwoPoint, path: States, mesh: Array) -> Curve:
-    """A path as a curve without costates on a mesh, shape (N+1,)."""
+    """Return a guess of the states as a curve with zero costates, on a given mesh, shape (N+1,)."""
     n, at = problem.states, stage_times(mesh, STAGES)
     nodes, stages = np.zeros((2 * n, len(mesh))), np.zeros((2 * n, *at.shape))
     nodes[:n], stages[:n] = path(mesh), path(at.ravel()).reshape(n, *at.shape)
@@ -95,7 +100,10 @@ def _line(problem: TwoPoint) -> States:
 
 
 def _under_guess(problem: TwoPoint) -> States | None:
-    """The motion under the control that is guessed, if it is, and stays in the domain."""
+    """Return the motion under the guessed control.
+
+    Return ``None`` without such a guess, or if the motion leaves the domain.
+    """
     instance, values = problem.instance, problem.instance.guess.control
     if not values:
         return None
@@ -111,7 +119,7 @@ def _under_guess(problem: TwoPoint) -> States | None:
 
 
 def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
-    """The motion without control through a scaled state; ``None`` where it leaves the domain."""
+    """Return the motion without control through a scaled state; ``None`` if it leaves the domain."""
     instance, start = problem.instance, tuple((state * problem.scale.state).tolist())
     steps = _steps(problem, start, backwards)
     grid = Grid.uniform(0.0, 1.0, steps)
@@ -124,7 +132,7 @@ def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None
 
 
 def _steps(problem: TwoPoint, start: tuple[float, ...], backwards: bool) -> int:
-    """So many that the quickest mode of a motion without control, as it is at its start, is followed."""
+    """Return the number of RK4 steps that resolve the fastest mode of a motion without control."""
     instance, n = problem.instance, problem.states
     none = (0.0,) * len(instance.model.spec.controls)
     begin = instance.t0 + problem.duration if backwards else instance.t0

@@ -1,8 +1,8 @@
-"""The quick way: Newton's method from the straight line between the ends, kept if it walks straight through.
+"""Quick start: Newton's method from the straight line between the boundary states, accepted only if it goes smoothly.
 
-No step may leave the domain, each must be shorter than the one before, few may be needed; on a mesh that resolves the
-motion, which is laid anew where it does not, the second variation must be positive. Everything else is left to slower
-ways.
+No correction may leave the domain, each must be smaller than the one before, and only a few are allowed. On a mesh that
+resolves the motion, which is recomputed if necessary, the second variation must be positive. All other cases are left
+to slower methods.
 """
 
 from __future__ import annotations
@@ -23,28 +23,32 @@ from satsym.solvers.collocation.system import System, costs
 from satsym.solvers.iteration import Limits
 
 NEAR_CORRECTION = 3e-2
-"""Last correction from which the corrections of the refinement converge, with the linearisation at hand."""
+"""Size of the last correction below which the refinement converges with the linearisation at hand."""
 
 FEW_CORRECTIONS = 6
-"""Corrections from the straight line that still count as straight through."""
+"""Largest number of corrections from the straight line."""
 
 ROUGH, FEWER = 2, 3
-"""First corrections, which are far off whatever the stages, and the stages that they are given."""
+"""Number of first corrections with fewer stages, and the number of these stages."""
 
 SHORTER = 0.8
-"""Share of the correction before that the next one may have. The first raises the costates from zero to their size,
-whatever that is, so that the second is not to be compared with it closely."""
+"""Factor by which each correction must be smaller than the one before.
+
+The first correction raises the costates from zero to their magnitude, so that the second one is not much smaller.
+"""
 
 
 def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt | None:
-    """The minimum to which Newton's method leads at once.
+    """Return the minimum to which Newton's method converges at once; ``None`` if it does not.
 
     Parameters
     ----------
     problem
-        Without bounds.
+        The problem without bounds.
     start
-        A guess, mostly without costates.
+        Initial guess, usually with zero costates.
+    limits
+        Limits of time, with an observer that is told the cost of each curve.
     """
     passed: list[tuple[System, Curve, float]] = []
     found = _followed(problem, start, passed)
@@ -55,7 +59,10 @@ def straight_through(problem: TwoPoint, start: Curve, limits: Limits) -> Attempt
 
 
 def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve, float]]) -> Attempt | None:
-    """The attempt without its cost; curves on the way, and the corrections that led to them, are put into a list."""
+    """Return the attempt without its cost.
+
+    Each curve on the way is appended to `passed`, with the size of its correction.
+    """
     curve, before = start.with_stages(FEWER), float("inf")
     system = System(problem, start.mesh, FEWER)
     for steps in range(1, FEW_CORRECTIONS + 1):

@@ -1,6 +1,6 @@
-"""From a control that is guessed, swept until it settles, to the extremal within the bounds.
+"""Extremals within bounds from a guessed control, by forward-backward sweeps followed by Newton's method.
 
-Where nothing is asked of the end, costates belong to every control, and a sweep begins wherever one likes.
+If neither final state nor final time is constrained, every control has its costates, and a sweep can begin anywhere.
 """
 
 from __future__ import annotations
@@ -22,19 +22,25 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.sweep import solving as forward_backward
 
 STEPS, SWEEPS = 200, 60
-"""Steps of each sweep, and the number of sweeps, which alone limits it: what is found must not depend on the clock."""
+"""Number of steps of each sweep, and number of sweeps.
+
+Only this number limits the sweeps, because the result must not depend on computing time.
+"""
 
 ROUGH = 1e-5
-"""Residual at which sweeps end: Newton's method goes on from there."""
+"""Residual at which sweeps end and Newton's method takes over."""
 
 
 def loose(problem: TwoPoint) -> bool:
-    """Whether nothing is asked of the end, nor of the final time."""
+    """Return whether neither the final state nor the final time is constrained."""
     return not problem.fixed.any() and not problem.unknowns
 
 
 def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limits: Limits) -> Curve | None:
-    """The extremal within the bounds to which sweeps lead from controls by name, evenly spaced values of each."""
+    """Return the extremal within bounds to which sweeps lead from guessed controls; ``None`` if there is none.
+
+    `control` contains equidistant values of each control by name.
+    """
     limits.spend(SWEEPS * STEPS)
     found = forward_backward.solve(_starting_at(problem.instance, control))
     if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
@@ -48,14 +54,14 @@ def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limi
 
 
 def on_mesh(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
-    """States and costates at times (M,) on a mesh."""
+    """Return states and costates at M times, interpolated to a mesh as a curve."""
     at = stage_times(mesh, STAGES)
     nodes, stages = (np.array([np.interp(where, tau, row) for row in z]) for where in (mesh, at.ravel()))
     return Curve(mesh, nodes, stages.reshape(len(z), *at.shape), problem.theta)
 
 
 def _starting_at(instance: Instance, control: Mapping[str, Sequence[float]]) -> Instance:
-    """The instance for a quick sweep that begins with a control."""
+    """Return the instance with the options of a quick sweep that begins with a guessed control."""
     options = msgspec.structs.replace(
         instance.solver,
         steps=STEPS,

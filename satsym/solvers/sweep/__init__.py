@@ -1,1 +1,1 @@
-"""The forward-backward sweep: by relaxation as textbooks have it, and by quasi-Newton steps."""
+"""The forward-backward sweep method: by relaxation as in textbooks, and by quasi-Newton steps."""

@@ -1,9 +1,9 @@
-"""Projected quasi-Newton descent on the control, with the gradient that the sweep yields.
+"""Projected quasi-Newton descent in the control, with the gradient that a forward-backward sweep provides.
 
-In the metric of H_uu the Hessian of J is the identity plus a smoothing operator, so a limited-memory method
-that starts from the identity converges quickly and independently of the grid. Where a bound holds the control, the
-step goes to the control law instead (a two-metric projection: Bertsekas, SIAM J. Control Optim. 20, 1982); on the
-sphere that bounds a ball the descent continues along the sphere.
+In the metric of H_uu the Hessian of J is the identity plus a smoothing operator. A limited-memory method that starts
+from the identity therefore converges quickly and independently of the grid. Controls at an active bound move to the
+control law instead (a two-metric projection: Bertsekas, SIAM J. Control Optim. 20, 1982); on the sphere that bounds a
+ball, the descent continues along the sphere.
 """
 
 from __future__ import annotations
@@ -20,61 +20,67 @@ from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, 
 from satsym.status import Status
 
 MEMORY = 20
-"""Pairs kept. Few are needed: a terminal cost on n states adds n large eigenvalues."""
+"""Number of stored pairs; few are needed, since a terminal cost on n states adds n large eigenvalues."""
 
 SUFFICIENT = 1e-4
-"""Share of the decrease predicted by the gradient that a step must achieve (Armijo)."""
+"""Fraction of the decrease predicted by the gradient that a step must achieve (Armijo)."""
 
 SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-20
-"""Step length below which the direction is given up, far from the optimum and close to it."""
+"""Step lengths below which a direction is abandoned, far from the optimum and close to it."""
 
 CLOSE_RESIDUAL = 1e-2
-"""Residual below which a step may be accepted because it reduces the residual. Gradient and J are both
-fourth-order approximations but not of each other; near the optimum J can no longer tell which step is better."""
+"""Residual below which a step may also be accepted because it reduces the residual.
+
+Gradient and J are fourth-order approximations, but the gradient is not the derivative of the approximate J. Near the
+optimum J can therefore no longer decide which step is better.
+"""
 
 NOTICEABLE = 1e-9
-"""Relative decrease of J below which it is no evidence: rounding and the discretisation are of this size."""
+"""Relative decrease of J below which it may be caused by rounding or discretisation."""
 
 ROUNDING = 30.0
-"""A residual within this factor of what a change of the last digit causes cannot be reduced."""
+"""Factor of the effect of a change of the last digit, within which a residual cannot be reduced further."""
 
 TINY_RESIDUAL = 1e-9
-"""Residual below which rounding is looked at before each step, lest many steps be spent on the last digits."""
+"""Residual below which the effect of rounding is tested before each step, to avoid many steps without progress."""
 
 SURE = 3.0
-"""The factor of ``ROUNDING`` while steps that reduce the residual are still found."""
+"""Value of ``ROUNDING`` while steps that reduce the residual are still found."""
 
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where the descent is."""
+    """State of the descent."""
 
     sweep: Sweep
-    """The current control with all that is known about it."""
+    """The current control with its motion, costates and gradient."""
     pairs: tuple[tuple[Array, Array], ...] = ()
-    """Recent (step, change of gradient) pairs in the scaled control, newest last."""
+    """Recent pairs of step and change of gradient in the scaled control, the newest last."""
     stalled: bool = False
-    """Whether no step could be found from here."""
+    """Whether no acceptable step was found from this control."""
 
 
 @dataclass(frozen=True, eq=False)
 class QuasiNewton:
-    """The method, from a starting motion that must be usable."""
+    """Quasi-Newton descent from an initial motion, which must be usable."""
 
     problem: SweepProblem
     start: Forward
     tolerance: float
 
     def init(self) -> Descent:
-        """Sweep the starting control."""
+        """Return the state at the initial control."""
         return Descent(backward(self.problem, self.start))
 
     def measure(self, state: Descent, number: int) -> Iteration:
-        """Cost and residual."""
+        """Return cost and residual of an iteration."""
         return Iteration(number, state.sweep.objective, state.sweep.residual)
 
     def terminate(self, state: Descent) -> tuple[Status, str] | None:
-        """Converged when control and control law agree."""
+        """Return status and message if the control agrees with the control law, or no step is found.
+
+        Otherwise ``None``.
+        """
         residual = state.sweep.residual
         if residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
@@ -86,7 +92,10 @@ class QuasiNewton:
         return Status.NOT_CONVERGED, f"no step decreases the cost further; residual {residual:.1e}"
 
     def step(self, state: Descent) -> Descent:
-        """One projected step with backtracking; after a failure once more without memory."""
+        """Return the state after one projected step with backtracking.
+
+        If none is found, it is repeated without memory.
+        """
         for pairs in (state.pairs, ()):
             found = self._search(state.sweep, pairs)
             if found is not None:
@@ -94,7 +103,10 @@ class QuasiNewton:
         return replace(state, stalled=True)
 
     def _scale(self, sweep: Sweep, free: Tangent) -> Array:
-        """Square roots of weight times Hessian of H: in the control so scaled, J is nearly the identity's quadratic."""
+        """Return square roots of weight times H_uu.
+
+        They scale the control so that the Hessian of J is near the identity.
+        """
         instance = self.problem.instance
         h_uu = self.problem.kernels.control_hessian_batch(
             self.problem.times, sweep.forward.x, sweep.u, sweep.lam, instance.parameters
@@ -102,7 +114,7 @@ class QuasiNewton:
         return np.sqrt(self.problem.weights * np.einsum("iik->ik", h_uu) * free.curvature)
 
     def _direction(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-        """The step in the control, and the gradient of J on the fine grid as far as the control can follow it."""
+        """Return the step in the control, and the gradient of J on the fine grid, restricted to free directions."""
         free = tangent(self.problem, sweep)
         scale = self._scale(sweep, free)
         gradient = free.along(self.problem.weights * sweep.gradient)
@@ -110,7 +122,10 @@ class QuasiNewton:
         return np.where(free.moves, descent, sweep.step), gradient
 
     def _search(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> Sweep | None:
-        """Backtrack along the projected direction until the cost, or close to the end the residual, decreases."""
+        """Return the first sweep along the projected direction with a smaller cost or, close to the optimum, residual.
+
+        ``None`` is returned if there is none.
+        """
         direction, gradient = self._direction(sweep, pairs)
         if not np.sum(gradient * direction) < 0.0:
             return None
@@ -143,7 +158,7 @@ class QuasiNewton:
 
 
 def _rounding(problem: SweepProblem, sweep: Sweep) -> float:
-    """A residual that rounding alone causes: the law's response to a change in the last digits."""
+    """Return the residual that rounding alone causes: the change of the control law for a change in the last digits."""
     nudged = sweep.u * (1.0 + 4.0 * np.finfo(float).eps)
     instance = problem.instance
     initial = tuple(float(np.nextafter(value, np.inf)) for value in instance.initial)
@@ -156,13 +171,16 @@ def _rounding(problem: SweepProblem, sweep: Sweep) -> float:
 
 
 def _shrink(change: float, predicted: float) -> float:
-    """Factor to the minimum of the parabola through the known values, kept within [0.1, 0.5]."""
+    """Return the factor to the minimum of the parabola through the known values, limited to [0.1, 0.5]."""
     curvature = change - predicted
     return float(min(0.5, max(0.1, -predicted / (2.0 * curvature)))) if curvature > 0.0 else 0.5
 
 
 def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free: Tangent) -> Array:
-    """The L-BFGS two-loop recursion in the free directions, from the identity (Nocedal and Wright, 7.4)."""
+    """Return the product of the L-BFGS inverse Hessian in the free directions with a gradient.
+
+    The two-loop recursion starts from the identity (Nocedal and Wright, 7.4).
+    """
     q = gradient.copy()
     used = []
     for step, change in reversed(pairs):
@@ -178,35 +196,35 @@ def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free
 
 
 ON_SPHERE = 1e-9
-"""Relative distance from the sphere within which a control is on it."""
+"""Relative distance from the sphere below which a control counts as lying on it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """In which directions the controls of a sweep are free, seen from where they are and where the law wants them.
+    """Directions in which the controls of a sweep are free.
 
-    Within a box a control is free or saturated. On a ball a control that is saturated can still turn: it moves on a
-    sphere, so gradients count only as far as they are tangential, and the curvature of the sphere adds to the Hessian.
+    In a box a control is free or saturated. A saturated control in a ball can still turn: it moves on a sphere, so that
+    only tangential gradients count and the curvature of the sphere is added to the Hessian.
     """
 
     moves: NDArray[np.bool_]
-    """Where a control moves along them; elsewhere a bound holds it. Shape (m, M)."""
+    """Whether a control may move in the free directions; otherwise it is held by a bound. Shape (m, M)."""
     normal: Array | None = None
-    """Unit normals of the sphere, zero where a control is not on it, shape (m, M); ``None`` without a ball."""
+    """Unit normals of the sphere, zero for controls not on it, shape (m, M); ``None`` without a ball."""
     curvature: Array | float = 1.0
-    """The Hessian of H on the sphere, relative to H_uu; 1 elsewhere. Shape (M,), or a number."""
+    """Hessian of H on the sphere relative to H_uu, one elsewhere; shape (M,), or a number."""
 
     def along(self, field: Array) -> Array:
-        """A field without its normal components, shape (m, M)."""
+        """Return a field without its normal components, shape (m, M)."""
         return field if self.normal is None else field - self.normal * (self.normal * field).sum(axis=0)
 
     def free(self, field: Array) -> Array:
-        """A field without its normal components, and zero where controls are held, shape (m, M)."""
+        """Return a field without its normal components, and zero for controls held by bounds, shape (m, M)."""
         return np.where(self.moves, self.along(field), 0.0)
 
 
 def tangent(problem: SweepProblem, sweep: Sweep) -> Tangent:
-    """The free directions at the control of a sweep."""
+    """Return the free directions at the control of a sweep."""
     instance = problem.instance
     wanted = unbounded_law(problem, sweep)
     free = instance.control_set.active(wanted) == 0

@@ -1,7 +1,8 @@
 """The forward-backward sweep method for a given final time and a free final state (boundary type 3).
 
-Solve on a uniform grid; where the control meets bounds, put nodes at the corners and solve again from there,
-until the corners stay where they are: between corners everything is smooth and the sweep is fourth order.
+The problem is solved on a uniform grid. If the control meets bounds, nodes are moved to the corners and the problem is
+solved again, until the corners no longer change: between corners all functions are smooth, and the sweep is of fourth
+order.
 """
 
 from __future__ import annotations
@@ -23,46 +24,46 @@ from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, 
 from satsym.status import Status
 
 ROUNDS = 6
-"""Times that nodes are moved to the corners, at the most."""
+"""Largest number of times that nodes are moved to the corners."""
 
 SETTLED_CORNERS = 1e-9
-"""Corners that move by less than this share of the horizon stay."""
+"""Change of a corner, as a fraction of the duration, below which it has converged."""
 
 WORTH_COMPILING = 20_000
-"""Steps from which compiled kernels pay for their compilation within one run."""
+"""Number of steps above which compiled kernels save more time than their compilation takes."""
 
 ITERATIONS = {"quasi-Newton": 500, "relaxation": 20_000}
 
 GROWTH = 1e3
-"""Divergence: the control and its law are this many times farther apart than they have been."""
+"""Factor of the smallest difference between control and control law so far, above which the iteration diverges."""
 
 PATIENCE = 200
-"""Sweeps without coming closer after which it is clear that they go round in circles."""
+"""Number of sweeps without a smaller difference after which the iteration is taken to cycle."""
 
 PROBE = 1e-6
-"""Size of the perturbation with which the response of the control law is measured, relative to the control."""
+"""Size of the perturbation for measuring the response of the control law, relative to the control."""
 
 PROBES = 30
-"""Power iterations at the most, to find the largest response."""
+"""Largest number of power iterations for the largest response."""
 
 FALLBACK = 100, 5.0
-"""Iterations and seconds that finding the extremal may take when relaxation has failed."""
+"""Largest number of iterations and of seconds for finding the extremal after relaxation has failed."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Minimise the cost over the control by sweeping.
+    """Minimise the cost over the control by forward-backward sweeps.
 
     Parameters
     ----------
     instance
-        With a given final time and a free final state.
+        An instance with a given final time and a free final state.
     progress
-        Called after each iteration.
+        Function that is called after each iteration.
 
     Returns
     -------
     Solution
-        With status ``converged`` when control and control law agree to the instance's tolerance.
+        The status is ``converged`` if control and control law agree to the instance's tolerance.
     """
     began = time.perf_counter()
     if instance.tf is None or instance.final:
@@ -95,7 +96,10 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def switching_times(problem: SweepProblem, sweep: Sweep) -> tuple[tuple[float, ...], ...]:
-    """For each control, when it meets or leaves a bound (on a ball: the same times for all); never, if it is fixed."""
+    """Return, for each control, the times at which it meets or leaves a bound; empty for a fixed control.
+
+    In a ball the times are the same for all controls.
+    """
     instance = problem.instance
     m = len(instance.model.spec.controls)
     distances = instance.control_set.excess(unbounded_law(problem, sweep))
@@ -122,7 +126,7 @@ def _numba_installed() -> bool:
 
 
 def _starting_control(problem: SweepProblem) -> Array:
-    """The guess where there is one, else no control, or the admissible one next to it."""
+    """Return the guessed control, otherwise zero or the admissible control nearest to zero."""
     instance, times = problem.instance, problem.times
     u = np.zeros((len(instance.model.spec.controls), len(times)))
     for i, name in enumerate(instance.model.spec.control_names):
@@ -141,7 +145,7 @@ def _run(
 
 
 def _improvable(run: Run[Descent] | Run[_Relaxed]) -> bool:
-    """Whether nodes at the corners can help: also a descent that is stuck may be so for corners within its steps."""
+    """Return whether nodes at the corners can improve a run: it has converged, or its descent is stuck."""
     return run.status is Status.CONVERGED or (isinstance(run.state, Descent) and run.state.stalled)
 
 
@@ -152,7 +156,7 @@ def _with_kinks(problem: SweepProblem, switches: tuple[tuple[float, ...], ...]) 
 
 
 def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Array:
-    """The control on another grid, interpolated before it is projected so that its corners stay sharp."""
+    """Return the control on another grid; it is interpolated before projection, so that its corners stay sharp."""
     smooth = unbounded_law(problem, sweep)
     u = np.array([np.interp(onto.times, problem.times, row) for row in smooth])
     return problem.instance.control_set.project(u)
@@ -204,7 +208,7 @@ def _explained(problem: SweepProblem, sweep: Sweep, run: Run[Descent] | Run[_Rel
 
 
 def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Solution:
-    """The starting motion leaves the domain or is not finite, so there is nothing to improve on."""
+    """Return the solution without result for an initial motion that leaves the domain or is not finite."""
     n = len(problem.instance.model.spec.states)
     status = Status.NON_FINITE if start.in_domain else Status.LEFT_DOMAIN
     what = "is not finite" if start.in_domain else "leaves the domain"
@@ -227,26 +231,25 @@ def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Sol
 
 @dataclass(frozen=True, eq=False)
 class _Relaxed:
-    """Where the relaxation is."""
+    """State of the relaxation."""
 
     sweep: Sweep
-    """The last sweep that could be completed."""
+    """The last completed sweep."""
     closest: float
     since: int = 0
-    """Smallest distance of control and law so far, and the number of sweeps since then."""
+    """Smallest difference of control and law so far, and number of sweeps since then."""
     broken: bool = False
     """Whether the next control led out of the domain or to numbers that are not finite."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Relaxation:
-    """Plain relaxation of the sweep, u <- (1 - rho) u + rho law, as textbooks and the documents print it.
+    """Plain relaxation of the sweep, u <- (1 - rho) u + rho law, as in textbooks and the audited documents.
 
-    Near an extremal without active bounds the law responds to a change v of the control by -K v with K >= 0, so an
-    error shrinks by 1 - rho (1 + k) for each eigenvalue k of K: relaxation is stable only if rho < 2/(1 + max k). K
-    grows quickly with the horizon. Far from the extremal K is another one, so the limit that is reported when a
-    relaxation fails is measured at the extremal, which a method without this limit finds. The motion it starts from
-    must be usable.
+    Near an extremal without active bounds, a change v of the control changes the law by -K v with K >= 0. An error is
+    therefore multiplied by 1 - rho (1 + k) for each eigenvalue k of K, and relaxation is stable only if rho < 2/(1 +
+    max k). K grows quickly with the duration. As K differs far from the extremal, the limit that is reported after a
+    failure is computed at the extremal, which the quasi-Newton method finds. The initial motion must be usable.
     """
 
     problem: SweepProblem
@@ -255,16 +258,16 @@ class _Relaxation:
     fraction: float
 
     def init(self) -> _Relaxed:
-        """Sweep the starting control."""
+        """Return the state at the initial control."""
         sweep = backward(self.problem, self.start)
         return _Relaxed(sweep, _distance(sweep))
 
     def measure(self, state: _Relaxed, number: int) -> Iteration:
-        """Cost and residual."""
+        """Return cost and residual of an iteration."""
         return Iteration(number, state.sweep.objective, state.sweep.residual)
 
     def step(self, state: _Relaxed) -> _Relaxed:
-        """Move a share of the way to the control law."""
+        """Return the state after a step of fraction rho towards the control law."""
         motion = forward(self.problem, state.sweep.u + self.fraction * state.sweep.step)
         if not motion.usable:
             return replace(state, broken=True)
@@ -274,7 +277,7 @@ class _Relaxation:
         return _Relaxed(sweep, min(distance, state.closest), 0 if closer else state.since + 1)
 
     def terminate(self, state: _Relaxed) -> tuple[Status, str] | None:
-        """Converged when control and control law agree; given up when they grow apart or circle."""
+        """Return status and message if control and control law agree, diverge or cycle; otherwise ``None``."""
         if state.sweep.residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
         if state.broken or _distance(state.sweep) > GROWTH * state.closest:
@@ -297,9 +300,10 @@ class _Relaxation:
 
 
 def largest_stable(problem: SweepProblem, motion: Forward) -> float:
-    """The largest stable relaxation near a motion, from the largest response of the law to the control.
+    """Return the largest stable relaxation near a motion, from the largest response of the law to the control.
 
-    Power iteration on the law without bounds; a lower response found too early makes the estimate optimistic.
+    The response is found by power iteration on the law without bounds. If the iteration ends early, the response is too
+    small and the result too large.
     """
     base = unbounded_law(problem, backward(problem, motion))
     size = PROBE * max(np.abs(base).max(), np.abs(motion.u).max(), np.finfo(float).tiny)
@@ -319,5 +323,5 @@ def largest_stable(problem: SweepProblem, motion: Forward) -> float:
 
 
 def _distance(sweep: Sweep) -> float:
-    """How far control and control law are apart."""
+    """Return the largest difference between control and control law."""
     return float(np.abs(sweep.step).max(initial=0.0))

@@ -1,8 +1,8 @@
-"""One forward-backward sweep: states forward, costates backward, and the control that they ask for.
+"""One forward-backward sweep: states forwards, costates backwards, and the control law that follows from them.
 
-Controls, states and costates are held on the fine grid of nodes and midpoints, shape (rows, 2N+1), even
-columns being nodes. The backward sweep is the adjoint of the forward one, so it yields the gradient H_u of
-the cost (Bryson and Ho, Applied Optimal Control, 2.2 and 7.2).
+Controls, states and costates are stored on the fine grid of nodes and midpoints, shape (rows, 2N+1), where even columns
+are nodes. The backward sweep is the adjoint of the forward sweep and yields the gradient H_u of the cost (Bryson and
+Ho, Applied Optimal Control, 2.2 and 7.2).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from satsym.solvers.simulation import blocks
 
 @dataclass(frozen=True, eq=False)
 class SweepProblem:
-    """What a sweep needs to know: an instance with a free final state, its kernels, a grid, and when to stop."""
+    """The problem of a sweep: an instance with a free final state, its kernels, a grid, and limits of time."""
 
     instance: Instance
     kernels: Kernels
@@ -42,59 +42,59 @@ class SweepProblem:
 
 @dataclass(frozen=True, eq=False)
 class Forward:
-    """A control and the motion it causes."""
+    """A control and the motion under it."""
 
     u: Array
     x: Array
     """Controls and states on the fine grid."""
     objective: float
-    """The cost J; NaN where the motion is not finite."""
+    """The cost J; NaN if the motion is not finite."""
     in_domain: bool
-    """Whether the motion stays where the model has a meaning."""
+    """Whether the motion stays in the domain of the model."""
 
     @property
     def usable(self) -> bool:
-        """Whether costates can be computed along it."""
+        """Whether costates can be computed along the motion."""
         return self.in_domain and bool(np.isfinite(self.objective))
 
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A motion with its costates and what they say about the control."""
+    """A motion with its costates, the control law and the gradient."""
 
     forward: Forward
     """The motion."""
     lam: Array
     """Costates on the fine grid."""
     law: Array
-    """The admissible control that minimises H at these states and costates."""
+    """The admissible control that minimises H for these states and costates."""
     gradient: Array
-    """H_u: the derivative of J by the control, per unit of time."""
+    """The gradient H_u, the derivative of J with respect to the control, per unit of time."""
 
     @property
     def u(self) -> Array:
-        """The control that was swept with."""
+        """The control of the forward sweep."""
         return self.forward.u
 
     @property
     def objective(self) -> float:
-        """Its cost J."""
+        """The cost J of the motion."""
         return self.forward.objective
 
     @property
     def step(self) -> Array:
-        """The change from the control to the one that the sweep asks for; zero at an extremal."""
+        """Control law minus control; zero at an extremal."""
         return self.law - self.u
 
     @property
     def residual(self) -> float:
-        """Largest change the sweep asks for, relative to the largest control."""
+        """Largest difference between control and control law, relative to the largest control."""
         size = max(np.abs(self.u).max(initial=0.0), np.abs(self.law).max(initial=0.0))
         return float(np.abs(self.step).max(initial=0.0) / size) if size > 0.0 else 0.0
 
 
 def forward(problem: SweepProblem, u: Array) -> Forward:
-    """Integrate the states under a control on the fine grid, shape (m, 2N+1)."""
+    """Return the motion under a control on the fine grid, shape (m, 2N+1)."""
     instance, kernels = problem.instance, problem.kernels
     p, grid = instance.parameters, problem.grid
     x, x_mid, running = blocks.forward(kernels, grid.nodes, instance.initial, u[:, ::2], u[:, 1::2], p, problem.limits)
@@ -106,7 +106,7 @@ def forward(problem: SweepProblem, u: Array) -> Forward:
 
 
 def backward(problem: SweepProblem, motion: Forward) -> Sweep:
-    """Complete a usable motion with its costates, the control law and the gradient."""
+    """Return a usable motion with its costates, control law and gradient."""
     instance, kernels = problem.instance, problem.kernels
     p, grid, x, u = instance.parameters, problem.grid, motion.x, motion.u
     lam_f = kernels.terminal_gradient(grid.tf, tuple(x[:, -1].tolist()), p)
@@ -119,7 +119,7 @@ def backward(problem: SweepProblem, motion: Forward) -> Sweep:
 
 
 def unbounded_law(problem: SweepProblem, sweep: Sweep) -> Array:
-    """The control that would minimise H if there were no bounds, shape (m, 2N+1)."""
+    """Return the control that would minimise H without bounds, shape (m, 2N+1)."""
     bounds = problem.instance.control_set.without_bounds.arguments
     law: Array = problem.kernels.control_law_batch(
         problem.times, sweep.forward.x, sweep.lam, problem.instance.parameters, bounds
