@@ -20,7 +20,7 @@ class Active(Kernels):
     """Kernels in which some of a model's inequalities at the end are constraints."""
 
     whole: Kernels | None = None
-    """The kernels with all inequalities as they were stated."""
+    """The kernels with all inequality constraints as they were stated, before the active ones were substituted."""
     names: frozenset[str] = frozenset()
     """Names of the constraints that are active."""
 

@@ -29,7 +29,7 @@ _FUNCTIONS = {
 
 
 MOST_REPEATED = 60
-"""Largest number of steps of an iteration."""
+"""Largest number of steps of an iteration in generated code."""
 
 
 class Unexpected(Exception):

@@ -22,8 +22,10 @@ _IMPORTS = ("import math", "import numpy as np")
 _LARGEST_INTEGER = 10**6
 _LONGEST_NAME = 1000
 _MOST_WORDS = 200_000
-"""Largest number of tokens of a module, ends of lines included; shipped modules have a tenth of that. Parsing a text
-takes a thousand times its memory."""
+"""Largest number of tokens, including line ends, of a module; larger modules are refused.
+
+Shipped modules have a tenth of that. Parsing a text takes a thousand times its memory.
+"""
 _WORD = re.compile(r"\w+|[^\w ]")
 _NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
 

@@ -28,17 +28,18 @@ from satsym.kernels.relations import of_motion
 from satsym.spec import Variable
 
 LIMIT = 1e-9
-"""Largest difference of equal sides, relative to the size of their terms; rounding stays far below."""
+"""Largest relative difference of two sides that must be equal; kernels with a larger one contradict each other."""
 
 PLACES = 24
-"""Number of random places at which functions are compared."""
+"""Number of random points at which functions are compared."""
 
 STEPS, FRACTION = 3, 0.1
-"""Number of nodes of compared loops, and the relative change of the states in a step."""
+"""Number of nodes of the trajectory loops that are compared, and relative change of the states in a step."""
 
 FAR_FACTOR = 1e9
 BOUNDS_ASIDE = ((float("nan"), -0.2, 0.1, -0.5), (float("nan"), 0.2, 0.5, -0.1))
-"""Lower and upper bounds relative to a control: in turn any, around it, above it and below it."""
+"""Lower and upper bounds relative to a control: arbitrary, then such that they enclose it, lie above it and below
+it."""
 
 SEED = 20
 _FAILED = (ArithmeticError, ValueError, TypeError)
@@ -56,7 +57,7 @@ class Contradiction:
     claim: str
     """Name of the function, and the relation that it violates."""
     deviation: float
-    """Relative deviation, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
+    """Relative deviation, see :data:`LIMIT`; infinite if only one of the two numbers is finite."""
 
 
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:

@@ -9,14 +9,14 @@ from satsym.control_part import SWITCHED
 from satsym.spec import ProblemSpec
 
 BATCH = "_batch"
-"""Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""
+"""Suffix of the name of a function's batch form, which also takes the argument ``out=None``."""
 
 TUPLES = ("nu", "p", "bounds", "final")
-"""Arguments that are tuples of numbers, or of arrays, also in the batch form; others are arrays there."""
+"""Arguments that are tuples of numbers, or of arrays, also in the batch form; the batch form takes others as arrays."""
 
 GROUPS = {"x": "n", "lam": "n", "u": "m", "p": "k", "bounds": "b", "nu": "c", "final": "f", "original": "n"}
 GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight": "mm"}
-"""What an argument of a function of one point consists of: a letter for each axis, see :func:`sizes`."""
+"""Argument -> its shape as letters, one for each axis, see :func:`sizes`."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Signature:
     shape: str = ""
     """A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a matrix."""
     over_parameters: bool = False
-    """Whether parameters count for the shape of a batch, so that each may be an array."""
+    """Whether parameters count for the shape of a batch, so that each parameter may be an array."""
 
 
 def _signature(arguments: str, shape: str = "") -> Signature:
@@ -72,15 +72,18 @@ _SWITCHING = {
     "magnitude_weight": _signature("t x lam p", "m"),
     "extremal_jacobian": _signature("t x u lam p", "zz"),
 }
-"""Functions of a problem whose Hamiltonian is linear in the controls and their magnitudes, in place of the previous
-ones. Its ``canonical`` functions and ``boundary`` are those of the regularised problem, see
-:mod:`satsym.codegen.switching`."""
+"""Functions of problems whose Hamiltonian is linear in the controls and their magnitudes.
+
+They replace the functions of regular control laws. The functions ``canonical`` and ``boundary`` of such problems are
+those of the regularised problem, see :mod:`satsym.codegen.switching`.
+"""
 DIRECTIONS = {"regularised_cost": _signature("t x lam p bounds")}
 """Additional functions of a problem in which some controls are directions: its ``canonical`` functions and ``boundary``
 are those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."""
 
 THROTTLES = {"throttle_slope": _signature("t x lam p bounds", "r")}
-"""Additional functions of a problem with directions whose vectors may vanish: the norms of these switch by the sign."""
+"""Additional functions of a problem with directions whose vectors may vanish, as the sign of these functions
+decides."""
 
 PATH_CONSTRAINTS = {
     "path_constraints": _signature("t x u p bounds", "h"),
@@ -103,7 +106,8 @@ INTERIOR = {
     "interior_gradient": _signature("t x p", "jn"),
     "interior_drift": _signature("t x p", "j"),
 }
-"""Additional functions of a problem with points on the way, see :mod:`satsym.symbolic.principle.path.interior`."""
+"""Additional functions of a problem with interior point conditions, see
+:mod:`satsym.symbolic.principle.path.interior`."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
@@ -128,7 +132,7 @@ LINEAR = {
     "closed_loop_routh": _of_parameters("gain p", "g"),
     "riccati_residual": _of_parameters("riccati state_weight control_weight p", "nn"),
 }
-"""What linear models may have; ``MODEL["linear"]`` names those that one has.
+"""Functions of linear models; ``MODEL["linear"]`` names those that a model has.
 
 Matrices among the arguments (``gain`` K, shape (m, n); ``riccati`` P; ``state_weight`` Q; ``control_weight`` R) are
 given as sequences of their entries, row by row; in the batch form as arrays whose first axis counts the entries.
@@ -139,14 +143,17 @@ POINTWISE = {
     **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
     **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | BOUNDARY_CONTROLS | INTERIOR | CURVE | LINEAR),
 }
-"""All functions of one point in time that any model has."""
+"""All functions of a single time that a model may have."""
 
 _FORWARD = {"forward": _signature("times x0 u u_mid p x x_mid")}
 _BACKWARD = {"backward": _signature("times lam_f x x_mid u u_mid p lam lam_mid")}
 _SYMPLECTIC = {"symplectic": _signature("times x0 p x")}
 
 LOOPS = _FORWARD | _BACKWARD | _SYMPLECTIC
-"""Trajectory loops. Their controls, states and costates are tables: a sequence over time for each component."""
+"""Loops over the time steps of a trajectory.
+
+Controls, states and costates are tables, with a sequence over time for each component.
+"""
 
 
 def pointwise(spec: ProblemSpec) -> dict[str, Signature]:

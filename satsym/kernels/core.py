@@ -72,9 +72,10 @@ Backend = Literal["python", "numba"]
 Function = Callable[..., Any]
 
 _ARITHMETIC = (ZeroDivisionError, OverflowError, ValueError, TypeError)
-"""What Python floats and math raise where arrays have inf or nan; shapes are checked beforehand.
+"""Errors that Python floats and ``math`` raise where arrays give inf or nan.
 
-The last comes from complex numbers, which Python makes of fractional powers of negative ones.
+Shapes are checked beforehand. TypeError comes from complex numbers, the results of fractional powers of negative
+numbers.
 """
 
 
@@ -91,11 +92,11 @@ class Kernels(Functions):
     functions: Mapping[str, Function]
     """The generated functions by name."""
     backend: Backend = "python"
-    """``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each)."""
+    """``"python"`` (floats, without waiting) or ``"numba"`` (each function is compiled at its first call)."""
     origin: tuple[str, Path | None] | None = None
-    """What :func:`satsym.kernels.load` was given, so that another process can load it again."""
+    """Arguments of :func:`satsym.kernels.load`, so that another process can load the kernels again."""
     text: str | None = None
-    """Text of a module that is not shipped, from which another process makes the same kernels."""
+    """Text of a module that is not shipped, from which another process can create the same kernels."""
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.

@@ -23,11 +23,10 @@ from satsym.kernels.core import Function, Kernels
 
 COMPLEX_STEP = 1e-30
 COPIES, COPY_DISTANCE = 2, 1e-4
-"""Number of displaced copies of each place, and their distance from it, relative to each argument."""
+"""Number of displaced copies of each point, and their relative distance from the point in each argument."""
 
 SMALLEST_FRACTION = 1e-4
-"""Fraction of the largest entry in a row of derivatives below which an entry is not resolved, since terms may cancel.
-"""
+"""Fraction of the largest derivative in a row below which a derivative is not compared, since terms may cancel."""
 
 TOGETHER = {
     "dynamics": ("x", "u"),
@@ -39,7 +38,7 @@ TOGETHER = {
     "inertial_state": ("x", "t"),
     "switching_function": ("x", "lam", "t"),
 }
-"""Arguments by which derivatives of a function are computed in one call."""
+"""Function -> arguments with respect to which it is differentiated in one call."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +48,11 @@ class Evaluation:
     kernels: Kernels
     """Kernels whose functions are evaluated."""
     at: Mapping[str, Any]
-    """By name of the argument: times (K,), tables of K columns; for those in :data:`TUPLES` tuples of numbers or of
-    arrays (K,). The first K/(1 + COPIES) columns are the places, then come the copies."""
+    """Name of an argument -> its values: times (K,), tables of K columns, or tuples for the arguments in
+    :data:`TUPLES`.
+
+    The first K/(1 + COPIES) columns are the points, the others their displaced copies.
+    """
 
     @cached_property
     def signatures(self) -> dict[str, Signature]:
@@ -208,9 +210,9 @@ class Relation:
     """The relation that the function must satisfy, in words."""
     left: Array
     right: Array
-    """The two sides that must be equal, of one shape; the last axis counts columns."""
+    """The two sides that must be equal, of the same shape, whose last axis counts columns."""
     terms: Array | float = 0.0
-    """Sizes of the terms of both sides, where these may cancel; broadcast against the sides."""
+    """Magnitudes of the terms of both sides, needed if terms may cancel; broadcast to the shape of the sides."""
 
 
 def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> list[float]:

@@ -26,7 +26,7 @@ from satsym.kernels.evaluation import Evaluation, Relation
 from satsym.spec import ProblemSpec
 
 DIGITS = 60
-"""Number of digits of derivatives; values have twice as many."""
+"""Number of digits of derivatives; values are computed with twice as many."""
 
 NO_NUMBERS = (ArithmeticError, ValueError, TypeError)
 """Errors that functions raise outside their domain."""

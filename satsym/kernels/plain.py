@@ -87,7 +87,10 @@ def _rk4(
 
 KICKS = ("0.0414649985182624", "0.198128671918067", "-0.0400061921041533", "0.0752539843015807", "-0.0115113874206879")
 DRIFTS = ("0.123229775946271", "0.290553797799558", "-0.127049212625417", "-0.246331761062075", "0.357208872795928")
-"""The first fractions of the twelve kicks and of the eleven drifts; symmetric, with sums of one."""
+"""Coefficients of the symplectic method: fractions of the step for the twelve kicks, and for the eleven drifts.
+
+Only the first half is listed, since the method is symmetric; each kind has the sum one.
+"""
 
 
 def weights() -> tuple[list[float], list[float]]:

@@ -16,7 +16,7 @@ from satsym.control_set import ControlSet
 from satsym.kernels.evaluation import SMALLEST_FRACTION, Evaluation, Relation, along, derivative, size
 
 PROBES = (-1.7, -0.4, 0.9, 2.3)
-"""Where polynomials are compared with determinants, in units of the matrix."""
+"""Arguments at which characteristic polynomials are compared with determinants, in units of the matrix norm."""
 
 
 def of_motion(of: Evaluation) -> Iterator[Relation]:

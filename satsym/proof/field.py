@@ -21,7 +21,7 @@ from satsym.proof.laws import AtLevels, Law, Throttled, gradient
 from satsym.proof.shooting import Carried, Pass, Segment, Shooting
 
 DEEPEST = 10
-"""Largest number of times a step is halved to show that X is regular on it."""
+"""Largest number of times that a step is halved to show that X is regular on it; otherwise the proof fails."""
 
 
 class _FormNotPositive(NotProved):

@@ -25,9 +25,9 @@ from satsym.proof.walls import OnBoundary, Pushed
 POINTS = 3
 SEED = 20260
 SPREAD = 0.03
-"""Distance of the random points from the extremal, relative to the sizes."""
+"""Distance of the random test points from the extremal, relative to the magnitudes of the components."""
 KEPT = 0.6
-"""Fraction of the arithmetic's bits to which equal numbers must agree, relative to the sizes of both."""
+"""Fraction of the working precision, in bits, to which equal numbers must agree, relative to their magnitudes."""
 
 
 def verify(statement: Statement, law: Law, nodes: Sequence[Sequence[Ball]], sizes: Sequence[float]) -> None:

@@ -62,7 +62,7 @@ def inverse(jacobian: Matrix) -> Matrix:
 
 
 MOST_NODES = 9
-"""Largest number of nodes in a record."""
+"""Largest number of nodes in the record of a proof."""
 
 
 def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius: float) -> Proof:

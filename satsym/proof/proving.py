@@ -30,19 +30,22 @@ from satsym.proof.structure import REMAINDER, TERMS, leap
 from satsym.solution import Solution
 
 RADII = (1e-6, 1e-8, 1e-10, 1e-12)
-"""Radii of boxes about the midpoint that are tried in turn, relative to the sizes."""
+"""Radii of boxes about the midpoint that are tried in turn, relative to the magnitudes of the unknowns."""
 NEAR_ANSWER = 1e-3
-"""Largest distance of the extremal from the answer, in initial costates and duration, relative to the sizes."""
+"""Largest distance between the proved extremal and the numerical solution, relative to the magnitudes.
+
+It is measured in initial costates and duration; a larger distance makes the proof fail.
+"""
 
 COARSE = Order(18, 1e-16)
 SPARE = 8
-"""Number of digits beyond the requested ones with which steps and boxes are computed."""
+"""Number of digits that are added to the requested ones in the computation of steps and boxes."""
 
 TRIES = 12
-"""Largest number of corrections of the midpoint."""
+"""Largest number of Newton corrections of the midpoint."""
 
 SETTLED_CORRECTION = 1e-8
-"""Size of a correction, relative to the sizes, below which only one more follows, to all digits."""
+"""Relative size of a correction below which only one further correction, with all digits, follows."""
 
 
 def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Proof:

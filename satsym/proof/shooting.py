@@ -131,9 +131,9 @@ class Shooting:
     arcs: tuple[Arc, ...]
     junctions: tuple[Junction, ...]
     sizes: tuple[float, ...]
-    """Sizes of the components, and of the cost."""
+    """Typical magnitudes of the components, and of the cost."""
     multiplier_sizes: tuple[float, ...] = ()
-    """Sizes of the multipliers of constraints at the end."""
+    """Typical magnitudes of the multipliers of terminal constraints."""
 
     @property
     def lengths_given(self) -> int:

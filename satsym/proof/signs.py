@@ -17,16 +17,16 @@ from satsym.proof.shooting import Junction, Pass, Shooting
 from satsym.proof.walls import OnBoundary, require_push
 
 DEEPEST = 16
-"""Largest number of times a step is halved to show a sign on it."""
+"""Largest number of times that a step is halved to prove a sign on it."""
 PARTS = 14
-"""Largest number of times a step is halved to find the part on which a condition falls to zero."""
+"""Largest number of times that a step is halved to locate the part in which a condition falls to zero."""
 
 _LINEAR = "H is linear in the controls, and its coefficients do not all vanish"
 _DIRECTED = {
     "angle": "H is a cosine of the direction, and its amplitude does not vanish",
     **dict.fromkeys(("ball", "annulus"), _LINEAR),
 }
-"""Reasons why a direction is the only minimiser, by the kind of its set."""
+"""Kind of a control set -> reason why the direction found is the only minimiser of the Hamiltonian."""
 
 
 @dataclass(frozen=True)

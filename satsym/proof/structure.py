@@ -19,14 +19,17 @@ from satsym.proof.statement import Statement
 from satsym.solution import Solution
 
 GROWTH = 20.0
-"""Largest growth of errors along a segment, relative to the sizes of components."""
+"""Largest growth factor of errors along a segment, relative to the magnitudes of components.
+
+A segment with a larger growth is divided.
+"""
 FINEST = 2.0**-24
 """The fractions of an arc at which nodes are placed are multiples of this number."""
 TERMS, REMAINDER = 16, 1e-15
 NEAR_LEVEL = 1e-6
-"""Largest distance of a control from a level that it is at, relative to the distance of levels."""
+"""Largest distance of a control from a constant level that it is taken to have, relative to the distance of levels."""
 TOGETHER = 1e-9
-"""Distance from a switching time, relative to the horizon, within which a solver's nodes are ignored."""
+"""Distance from a switching time, as a fraction of the duration, within which the solver's nodes are ignored."""
 
 
 class Path:

@@ -49,7 +49,7 @@ class Rows:
     name: str
     count: int
     columns: int = 0
-    """Number of columns of the derivatives by the beginning of a step, among these rows."""
+    """Number of columns of derivatives with respect to the initial values of a step, among these quantities."""
 
 
 def text(spec: ProblemSpec, module: str, bounds: Sequence[float], accurate: Tableau) -> str:

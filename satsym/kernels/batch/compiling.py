@@ -23,14 +23,14 @@ from satsym.kernels.core import Kernels
 from satsym.status import BadInput
 
 HEAD = ('"""Written by satsym; it may be removed at any time."""', "", "import math", "", "inf = math.inf")
-"""The head of every text that is compiled."""
+"""First lines of every source text that is compiled."""
 
 FAST_MATH_FLAGS = {"contract", "nsz", "arcp"}
-"""Transformations of sums and products that compilers may use; numbers are never assumed to be finite."""
+"""Floating-point transformations that compilers may apply; they may never assume that numbers are finite."""
 
 
 MOST_KEPT = 500 * 10**6
-"""Bytes of cached machine code, beyond which the least recently used code is removed."""
+"""Size of cached machine code, in bytes, above which the least recently used code is removed."""
 
 
 def able() -> bool:
@@ -93,7 +93,7 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
 
 
 ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many", "combine")
-"""Functions that are called from outside; their machine code, with all that they call, is cached."""
+"""Compiled functions that are called from Python; their machine code is cached with all functions that they call."""
 
 
 @contextmanager

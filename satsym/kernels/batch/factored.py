@@ -20,7 +20,7 @@ NAMED = {"fabs": np.abs, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan
 """Functions of ``math`` that have other names in NumPy."""
 
 UNIT, INVERSE = "unit", "inverse unit"
-"""Names of the unit, by whose powers values are multiplied, and of its inverse, among the inputs of a tape."""
+"""Input names of a tape for the unit, by whose powers values are multiplied, and for the inverse of the unit."""
 
 
 class Unsuited(Exception):
@@ -35,7 +35,7 @@ class Factored:
     factor: float = 1.0
     power: int = 0
     fixed: int | None = None
-    """Another value, which never changes, that is a postponed factor as well; ``None`` without one."""
+    """Constant value that is a postponed factor in addition to the number and power; ``None`` if there is none."""
 
     def times(self, factor: float, power: int = 0) -> Factored:
         """Return the value with one more factor and power of the unit."""

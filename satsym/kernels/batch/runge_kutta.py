@@ -26,20 +26,22 @@ from satsym.spec import ProblemSpec
 T = TypeVar("T")
 
 STAGES = (("now", 0.0), ("middle", 1.0), ("middle", 1.0), ("end", 2.0))
-"""The time of each stage, and the units of time by which the slopes before it are applied."""
+"""For each stage, its time within the step and the multiple of the unit (half a step) for the preceding slope."""
 
 WEIGHTS = (1.0, 2.0, 2.0, 1.0)
-"""Weights of the stages' slopes, in thirds of a unit."""
+"""Weights of the slopes of the four stages, in thirds of a unit."""
 
 SCALES = (2.0, 0.5)
-"""Factors that are tried for quotients."""
+"""Factors of quotients that are tried in the search for the step with fewest operations."""
 
 BLOCK, SMALLEST_BLOCK, CACHE = 8192, 2048, 2.5e6
-"""Largest and smallest number of columns at a time, and bytes of reused rows: few enough for the cache, many enough
-that the overhead of calls is negligible."""
+"""Largest and smallest number of columns processed at a time, and size of the reused rows in bytes.
+
+They are small enough for the processor's cache, and large enough for the overhead of calls to be negligible.
+"""
 
 MOST_TRIED, MOST_OPERATIONS = 6, 400
-"""Largest number of quotients whose factors are tried, and of operations of a step for which anything is tried."""
+"""Limits of the search for factors: largest number of quotients, and largest number of operations of a step."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Choice:
     scales: tuple[float, ...] = ()
     """Powers of the unit by which quotients are multiplied."""
     late: bool = True
-    """Whether factors that never change are applied late."""
+    """Whether constant factors are applied as late as possible."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +77,10 @@ class Step:
     powers: tuple[int, ...]
     """Powers of the unit by which states are multiplied."""
     slopes: tuple[tuple[Slope, ...], ...]
-    """Slopes of each stage."""
+    """Slopes of the states in each stage."""
     ahead: tuple[int | None, ...]
-    """States of the last stage to which two slopes were added in place."""
+    """For each state, the value of the last stage to which two slopes were added in place; ``None`` if there is
+    none."""
     quotients: int
     """Number of quotients whose scales may be chosen."""
 
@@ -226,12 +229,12 @@ class Group:
 
     states: tuple[tuple[int, ...], ...]
     rows: tuple[tuple[int, ...], ...]
-    """States of each sum, and rows of the step's slopes on which they depend."""
+    """States of each weighted sum, and the rows of the step's slopes that the sum depends on."""
     weights: Array
-    """Weights of states and rows, shape (sums, states, states + rows)."""
+    """Weights of states and rows in the sums, shape (sums, states, states + rows)."""
     now: Array
     after: Array
-    """States and rows before a step and after it, alternating, shape (sums, states + rows, columns)."""
+    """Two alternating buffers of states and rows, before and after a step, shape (sums, states + rows, columns)."""
 
 
 class OnTape:
@@ -333,7 +336,7 @@ class Arranged:
 
 
 Sums = dict[tuple[int, int], list[tuple[tuple[int, ...], tuple[int, ...]]]]
-"""For each number of dependent states and of rows, the states and the rows of each such sum."""
+"""(Number of dependent states, number of rows) -> the states and the rows of each sum of this size."""
 
 
 def _sums(step: Step) -> Sums:

@@ -47,7 +47,7 @@ class Tape:
     made: list[Operation | float | str] = field(default_factory=list)
     """For each value, its operation, its constant, or its name as an input."""
     changing: set[int] = field(default_factory=set)
-    """Numbers of the values that change from run to run."""
+    """Indices of the values that change from run to run."""
     _known: dict[Any, int] = field(default_factory=dict)
 
     def given(self, name: str, changes: bool) -> int:
@@ -100,7 +100,7 @@ class Bound:
 
     first: Calls
     each: Calls
-    """The calls made once, and those of each run, with their arguments."""
+    """Function calls that are made once, and those that are made in each run, with their arguments."""
 
     def begin(self) -> None:
         """Compute the values that do not change from run to run."""
@@ -119,7 +119,7 @@ class Buffers:
 
     columns: int
     fixed: dict[int, Array] = field(default_factory=dict)
-    """Arrays of values that do not change, by their place on the tape."""
+    """Arrays of values that do not change, by their position on the tape."""
     free: list[Array] = field(default_factory=list)
     """Arrays that are free for reuse."""
 

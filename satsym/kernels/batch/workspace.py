@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 LANES = 16
-"""Number of columns of a block: a few vectors, so that one is computed while another waits for its divisions."""
+"""Number of columns of a block: several vectors, so that the processor overlaps their divisions."""
 
 
 @dataclass
@@ -24,7 +24,7 @@ class Workspace:
     size: int = 0
     """Number of places reserved so far."""
     places: dict[str, int] = field(default_factory=dict)
-    """First places of named rows."""
+    """Name -> position of the first of the reserved rows."""
 
     def place(self, name: str, rows: int) -> int:
         """Reserve a number of new rows, and return their place."""
@@ -102,10 +102,10 @@ def stored(begin: int, target: str, rows: int) -> list[str]:
 
 
 Loads = Mapping[str, Callable[[int], str]]
-"""For each argument, a function from a component's number to its expression."""
+"""Argument of a function -> function from the index of a component to the expression that loads it."""
 
 KEPT = frozenset({"math", "range", "float"})
-"""Names in a body that are not prefixed."""
+"""Names in the body of a function that are not renamed."""
 
 
 @dataclass(frozen=True)

@@ -15,14 +15,14 @@ from typing import Any
 from flint import arb, arb_series, ctx
 
 Ball = Any
-"""An ``arb``: an interval of real numbers, by its midpoint and radius."""
+"""An ``arb`` of FLINT: an interval of real numbers, represented by midpoint and radius."""
 Series = Any
-"""An ``arb_series``: a power series whose coefficients are balls."""
+"""An ``arb_series`` of FLINT: a power series whose coefficients are intervals."""
 Key = tuple[str, int]
-"""The name of a generated function, and the number of one of its comparisons."""
+"""Name of a generated function, and the number of one of the comparisons in it."""
 
 LONGEST_PRODUCT = 1000
-"""Largest number of terms of a series that a constant is multiplied with."""
+"""Number of terms of a series up to which products with a constant are formed term by term."""
 
 
 class BeyondProof(Exception):

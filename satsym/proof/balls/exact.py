@@ -26,7 +26,7 @@ _ANGLES = {
     **dict.fromkeys(("arcmin", "arcminute"), Fraction(1, 10800)),
     **dict.fromkeys(("arcsec", "arcsecond"), Fraction(1, 648000)),
 }
-"""Units of angles as multiples of pi; radians are plain numbers."""
+"""Units of angles -> their value as a multiple of pi; ``None`` for radians."""
 
 
 @dataclass(frozen=True)

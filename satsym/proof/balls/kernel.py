@@ -16,9 +16,9 @@ from satsym.kernels.loading import shipped_text
 from satsym.proof.balls.arithmetic import Answers, BeyondProof, constant, mathematics
 
 CONSTRAINTS = "terminal_constraints"
-"""The name of a kernel's function for the constraints at the end."""
+"""Name of the kernel function of the terminal constraints."""
 ROUNDED = 15
-"""Number of digits from which a number in generated code may be rounded."""
+"""Number of digits of a number in generated code from which it may be a rounded value."""
 
 
 class BallKernel:

@@ -15,11 +15,14 @@ from flint import arb, arb_mat, arb_series, ctx
 from satsym.proof.balls.arithmetic import Ball, NotProved, Series, value
 
 Matrix = Any
-"""An ``arb_mat``."""
+"""An ``arb_mat`` of FLINT: a matrix of intervals."""
 SHORTEST = 1e-9
-"""Fraction of its length to which a step is cut before the search for an enclosure ends."""
+"""Fraction of its initial length below which a step is not shortened further in the search for an enclosure."""
 FEWER = 0.65
-"""Fraction of the terms used in series of the derivatives by the start, which multiply small numbers."""
+"""Fraction of the terms of a series that is used for derivatives with respect to initial values.
+
+The derivatives are multiplied by small numbers and need less accuracy.
+"""
 
 
 class Field(Protocol):
