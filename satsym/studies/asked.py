@@ -25,13 +25,16 @@ from satsym.studies.reading import Design, chain
 from satsym.version import __version__
 
 LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
-"""Largest number of rows of a chunk, and least number of chunks of a study with enough rows."""
+"""Largest number of rows of a chunk, and smallest number of chunks of a study that has enough rows."""
 
 LIBRARIES = ("numpy", "scipy", "numba")
 """Libraries whose versions may change the last digits of results."""
 
 PLACES = ("name", "path", "title", "model")
-"""Keys of an instance that its digest omits: results do not depend on them, and the model has its own digest."""
+"""Keys of an instance that its digest omits.
+
+Results do not depend on these keys, and the model has its own digest.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +160,7 @@ class Task:
 
 
 CODE = ("satsym.studies.chunks", "satsym.studies.asked", "satsym.studies.branches")
-"""Modules whose code, with all that it imports, determines the results."""
+"""Modules whose code, together with everything that they import, determines the results."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ OF_COMMANDS = {
     "feedback": (Command.SIMULATE,),
     "trajectories": (Command.SOLVE, Command.SIMULATE),
 }
-"""Options with the commands that have them."""
+"""Option -> the commands that have this option."""
 
 
 def asked(
@@ -86,7 +86,7 @@ def asked(
 
 
 FEWEST_ROWS_COMPILED = 1000
-"""Number of rows from which on code is compiled without being requested."""
+"""Number of rows above which code is compiled without a request."""
 
 
 def _worth_compiling(study: Study) -> bool:

@@ -39,20 +39,22 @@ from satsym.studies.solving import SINGLE_ORIGIN, certified, drawn_for_competito
 from satsym.studies.together import CLOSED, plain
 
 FEWEST_ROWS_OF_JUMP, MOST_ROWS = 4, 100_000
-"""Least number of rows on a line for a jump to be recognised, and largest number of rows of an examined study."""
+"""Smallest number of rows on a line for which jumps are recognised, and largest number of rows that are examined."""
 
 JUMP, ROUNDING = 4.0, 1e-6
-"""Ratio of a change to nearby changes that makes it a jump, and the fraction of the largest value below which it is
-none."""
+"""Ratio of a change to nearby changes above which it is a jump, and smallest relevant change.
+
+The latter is a fraction of the largest value.
+"""
 
 RELATIVE_GAP = 1e-6
-"""Largest relative difference of costs and of costates of one extremal."""
+"""Relative difference up to which costs and costates are taken to belong to the same extremal."""
 
 SAMPLES, ACCURACY = 61, 1e-8
-"""Number of nodes, and largest error, of a neighbour's trajectory that serves as an initial guess."""
+"""Number of nodes, and largest error, of a neighbour's trajectory that serves as initial guess."""
 
 ORIGIN = "neighbour's branch"
-"""The recorded origin of answers that were found from a neighbour's, because they cost less."""
+"""The recorded origin of solutions found from that of a neighbouring row, because their cost is lower."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +66,9 @@ class Known:
     """Values of the varied numbers."""
     key: str
     cost: float
-    """Cost of the answer, as it is minimised."""
+    """Cost of the solution, as it is minimised."""
     costates: tuple[float, ...]
-    """Initial costates of the answer."""
+    """Initial costates of the solution."""
     t_final: float
 
 
@@ -90,10 +92,10 @@ class Compared:
     """The result of comparing two neighbours."""
 
     one: bool
-    """Whether both rows are of one branch."""
+    """Whether both rows belong to one branch of extremals."""
     first: Row | None
     second: Row | None
-    """The cheaper answers of both rows, found from each other's."""
+    """Solutions of lower cost of both rows, each found from the other row's solution; ``None`` if there is none."""
 
 
 def looked_for(study: Study) -> bool:
@@ -262,7 +264,7 @@ class Some(Generic[What]):
 
 
 AT_A_TIME = 4
-"""Number of comparisons that a worker gets at a time."""
+"""Number of comparisons that a worker receives at a time."""
 
 
 def followed(study: Study, found: Iterator[tuple[int, list[float], Row]], executor: Executor) -> Branches:

@@ -25,10 +25,10 @@ from satsym.studies.rows import PASSING, Row
 from satsym.wording import printable
 
 LINES, ARRAYS = "parts.jsonl", "parts.npz"
-"""Names of the two files while a study is computed."""
+"""Names of the two files that contain finished parts while a study is being computed."""
 
 DIGEST = 16
-"""Number of letters of the digest that begins a line."""
+"""Number of characters of the digest at the beginning of a line."""
 
 
 @dataclass(frozen=True)

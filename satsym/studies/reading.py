@@ -165,7 +165,7 @@ def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
 
 
 ROUNDING = 1e-15
-"""Fraction of the largest value of a grid by which rounding may change another value."""
+"""Deviation due to rounding, as a fraction of the largest value of a grid, up to which a value belongs to the grid."""
 
 
 @dataclass(frozen=True)

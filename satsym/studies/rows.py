@@ -55,7 +55,7 @@ class Failure(str, Enum):
 
 
 PASSING = (Failure.WORKER_DIED.value, Status.TIME_LIMIT.value)
-"""Statuses that do not depend on the row itself, so that another run may answer it."""
+"""Statuses that do not depend on the row itself, so that the row may be solved in another run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ Cases: TypeAlias = "Sequence[tuple[str, Instance]]"
 """The keys and the instances of some rows."""
 
 Work: TypeAlias = Callable[[Cases], list[Row]]
-"""A function from rows of a chunk, in the order of computation, to their entries in the table."""
+"""Function from rows of a chunk, in the order of computation, to their entries in the table."""
 
 
 def one_by_one(single: Callable[[str, Instance], Row]) -> Work:
@@ -142,7 +142,7 @@ class Found:
     """The results of M rows that were computed together."""
 
     minimum: NDArray[np.bool_]
-    """Whether each row has the wanted minimum, shape (M,); the single solver computes the others."""
+    """Whether each row has the required minimum, shape (M,); the other rows are left to the single solver."""
     method: str
     origins: Sequence[str]
     costs: Array
@@ -154,7 +154,7 @@ class Found:
     switches: Array
     """Number of switches of the controls, shape (M,)."""
     unreachable: Mapping[int, str] = field(default_factory=dict)
-    """Reasons why rows have no answer, where their ends cannot be reached, by row."""
+    """Row -> reason why it has no solution, for rows whose final state cannot be reached."""
 
 
 def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:

@@ -15,7 +15,10 @@ from satsym.studies.parts import Parts
 from satsym.studies.rows import Failure, Row
 
 MOST_DEATHS = 3
-"""Number of workers that may die of a chunk before its rows are computed singly, and of a row before it is given up."""
+"""Number of workers that may die while computing a chunk before its rows are computed singly.
+
+It is also the number of workers that may die while computing a row before the row is abandoned.
+"""
 
 
 @dataclass(frozen=True)
@@ -127,10 +130,10 @@ def run(
 
 
 PAUSE = 0.5
-"""Seconds between reports of progress while nothing is new."""
+"""Seconds between reports of progress if nothing is new."""
 
 DEADLY = "KilledWorker"
-"""Name of the error of Dask for a task of which several workers died."""
+"""Name of the error that Dask raises for a task of which several workers died."""
 
 
 def _result(future: Future[list[Row]]) -> list[Row] | int:

@@ -20,10 +20,10 @@ from satsym.studies.rows import Cases, Row, Work
 from satsym.studies.together import plain, rows_together, together
 
 ROWS_PER_COMPARISON = 100
-"""Number of rows of which about one is compared with competitors, if a sample is."""
+"""Average number of rows per row that is compared with competing extremals, if only a sample is compared."""
 
 SINGLE_ORIGIN = "single solver"
-"""The recorded origin of answers that were found without neighbours."""
+"""The recorded origin of solutions that were found without those of neighbouring rows."""
 
 
 def solving(task: Task) -> Work:

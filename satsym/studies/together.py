@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 NEIGHBOUR, LINE, CLOSED, REACHABLE = "nearest answer", Origin.STRAIGHT_LINE.value, "closed form", "reachable set"
 UNBOUNDED = "answer without bounds"
-"""The recorded origins of answers: the nearest answer, a line between the ends, a formula, a faster motion, or the same
-row's answer without bounds."""
+"""The recorded origins of solutions: the nearest solution, a straight line between the boundary states, a closed form,
+a faster motion, or the same row's solution without bounds."""
 
 WIDEST = 1e9
 """The number that replaces infinite bounds."""

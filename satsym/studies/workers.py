@@ -162,10 +162,10 @@ def _main_hidden() -> Iterator[None]:
 
 
 PATIENCE = 10.0
-"""Seconds in which a scheduler has to answer."""
+"""Seconds within which a scheduler has to respond."""
 
 AHEAD = 2
-"""Number of chunks given to each thread of a worker, so that none waits for the next."""
+"""Number of chunks assigned to each thread of a worker at a time, so that no thread waits for its next chunk."""
 
 
 @contextmanager

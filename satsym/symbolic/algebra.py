@@ -20,32 +20,35 @@ from satsym.symbolic.model import Model, symbols_of, t
 Simplified = TypeVar("Simplified", sp.Expr, sp.Matrix)
 
 MOST_TERMS_SIMPLIFIED = 400
-"""Largest number of terms, after expansion, of an expression that is simplified; larger ones stay unchanged."""
+"""Number of terms after expansion up to which an expression is simplified; larger expressions stay unchanged."""
 
 LENGTHY = 1000
-"""Largest number of operations of an expression that is simplified; longer ones stay unchanged."""
+"""Number of operations up to which an expression is simplified; longer expressions stay unchanged."""
 
 COMMON = 300
-"""Terms over a common denominator above which FLINT, and not sympy, cancels and factors, because sympy is slow."""
+"""Number of terms over a common denominator above which FLINT is used instead of SymPy, which would be slow."""
 
 TURNING = 300
-"""Largest product of operations and sines or cosines of an expression in which these are rewritten."""
+"""Product of the numbers of operations and of sines and cosines, up to which trigonometric terms are rewritten."""
 
 PROVABLE = 4000
-"""Largest number of terms of a sum that is multiplied out to decide whether it is zero."""
+"""Number of terms up to which a sum is multiplied out to decide whether it is zero."""
 
 MOST_OPERATIONS = 150
 GROWTH = 2
-"""Largest growth in operations, and number of terms, by which an expression is multiplied out."""
+"""Factor by which the number of operations may grow when an expression is multiplied out.
+
+It is also the largest number of terms that such an expression may have.
+"""
 
 FACTORED = 40
-"""Largest number of terms of a sum that is tried as a product; longer sums hardly ever have a short one."""
+"""Number of terms up to which a factorisation of a sum is tried; longer sums rarely have a short one."""
 
 MINUTE = 1e-30
-"""Magnitude below which a number may be zero."""
+"""Magnitude below which a computed number is taken to be possibly zero."""
 
 ONE_POINT = 20
-"""Seed of the first random point at which expressions are evaluated."""
+"""Seed of the random point at which expressions are evaluated first."""
 
 LARGEST_EXPONENT = 20
 """Largest exponent of a power that is multiplied out."""

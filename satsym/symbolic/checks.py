@@ -23,7 +23,7 @@ from satsym.symbolic.functions.roots import Root
 
 POINTS = 5
 TRIES = 60
-"""Largest number of random points drawn to find those at which functions have values."""
+"""Largest number of random points that are tried in order to find points at which functions have values."""
 
 _TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 

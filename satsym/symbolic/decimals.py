@@ -23,7 +23,7 @@ DIGITS = 2 * MOST_DIGITS
 """Digits of a decimal: twice the largest number of digits in checks."""
 
 CERTAIN = 400
-"""Digits of a long decimal that are still right after a few multiplications."""
+"""Number of digits of a long decimal that are still correct after a few multiplications."""
 
 LARGEST_RATIO_NUMBER = 20
 """Largest numerator and denominator of the ratio of two decimals that share a symbol."""

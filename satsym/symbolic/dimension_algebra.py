@@ -14,7 +14,7 @@ Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
 
 Known: TypeAlias = Mapping[str, Dimension | None]
-"""Names of symbols with their dimensions; ``None`` for zero, which has every dimension."""
+"""Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
 _TOLD = {

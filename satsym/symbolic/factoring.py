@@ -12,9 +12,9 @@ from sympy.polys.rings import sring
 from satsym.symbolic.decimals import with_letters
 
 HIGHEST_DEGREE = 200
-"""Degree of a polynomial in exponentials above which each of them counts as independent.
+"""Degree of a polynomial in exponentials above which each exponential is treated as an independent variable.
 
-To sympy exp(-6.537 x) is the power 6537 of exp(-x/1000), and FLINT looks for factors of that degree.
+To SymPy exp(-6.537 x) is the power 6537 of exp(-x/1000), and FLINT would search factors of that degree.
 """
 
 

@@ -28,14 +28,13 @@ from satsym.wording import printable, suggestion
 __all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
 
 _REACHED: dict[Path, dict[Path, str]] = {}
-"""For each executed derivation file, the files it read, itself included, with digests of their contents."""
+"""Derivation file that was executed -> the files that it read, including itself, with digests of their contents."""
 
 _IMPORTED: dict[Path, str] = {}
-"""Modules that derivation files imported, apart from satsym's and libraries', with digests; each is opened only once.
-"""
+"""Modules that derivation files imported, except satsym and libraries, with digests; each file is opened once."""
 
 _EXECUTING: list[Path] = []
-"""The derivation files under execution, each requested by the one before."""
+"""Derivation files that are being executed, each requested by the one before."""
 
 _LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parents[1])})
 

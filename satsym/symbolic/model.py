@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from satsym.symbolic.motion.geometry import Picture
 
 MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
-"""A pure function from a derivation to its next step; ``None`` where the step does not apply to the model."""
+"""Function from a derivation to its next step; ``None`` if the step does not apply to the model."""
 
 Requirement: TypeAlias = "Callable[..., Dimension | None]"
 """A function that checks the dimension of a described expression, if it is required, and returns it."""
@@ -136,7 +136,7 @@ class Model:
     """Whether time is a plain number even though other variables have units."""
 
     along_chain: ClassVar[bool] = False
-    """Whether this kind can be derived from a motion whose rates are a chain without closed form."""
+    """Whether this kind can be derived from a model whose states form a chain of integrators without closed form."""
 
     # What a kind of model says of itself; each has a default, so that a kind states only what it has.
 

@@ -115,7 +115,7 @@ costate_of = named("lambda_{}")
 acceleration_of = named("{}_ddot")
 """The symbol for the second time derivative of a coordinate."""
 solved = named("solved_{}")
-"""The symbol for the rate of a speed where it is the solution of a linear system, and not written out."""
+"""The symbol for the time derivative of a velocity that is given by a linear system instead of a formula."""
 optimal = named("{}_star")
 """The symbol for the value of a control that minimises H."""
 unconstrained = named("{}_hat")

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.core import exprtools
 
 LARGEST_COEFFICIENT = 2**64
-"""Largest whole coefficient of a polynomial whose roots sympy may seek to find its sign."""
+"""Largest integer coefficient of a polynomial whose roots SymPy may compute in order to find its sign."""
 
 _sign = exprtools._monotonic_sign
 

@@ -12,7 +12,7 @@ from types import FrameType
 from satsym.symbolic.derivation import DerivationError
 
 SIGNAL_INTERVAL = 0.5
-"""Seconds between repetitions of the signal, for code that swallowed it."""
+"""Seconds between repetitions of the signal, in case that code has suppressed it."""
 
 _at: list[tuple[str, str]] = []
 """The subject that is being derived, and its current step."""

@@ -74,21 +74,21 @@ class Analysis:
     """The distinct eigenvalues that have a closed form, with multiplicities and block sizes."""
     jordan: JordanForm | None
     exponential: sp.ImmutableMatrix | None
-    """Jordan form and e^(At); ``None`` where an eigenvalue has no closed form."""
+    """Jordan form and e^(At); ``None`` if an eigenvalue has no closed form."""
     stability: Stability
-    """The verdict and its reason."""
+    """Stability verdict with its reason."""
     routh: RouthArray
     """The Routh array of the characteristic polynomial."""
     controllability: Reach | None
     by_input: Mapping[str, Reach]
-    """Controllability by all inputs, and by each alone; ``None`` and empty without inputs."""
+    """Controllability by all inputs (``None`` without inputs), and by each input alone (empty without inputs)."""
     observability: Reach | None
     by_output: Mapping[str, Reach]
-    """Observability by all outputs, and by each alone; ``None`` and empty without outputs."""
+    """Observability by all outputs (``None`` without outputs), and by each output alone (empty without outputs)."""
     companion_forms: Mapping[str, CompanionForm]
-    """The companion form for each input that controls all states alone."""
+    """Companion form for each input by which alone the system is controllable."""
     assumed: tuple[sp.Expr, ...]
-    """Expressions assumed not to vanish, where that is not certain."""
+    """Expressions that are assumed not to vanish because that could not be decided."""
 
 
 def analyse(system: LinearSystem) -> Analysis:

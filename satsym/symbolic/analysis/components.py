@@ -25,7 +25,7 @@ class Component:
     """
 
     factor: Factor
-    """The factor of the characteristic polynomial."""
+    """Irreducible factor of the characteristic polynomial that belongs to the component."""
     projector: DomainMatrix
     """The projector onto the component's invariant subspace."""
     semisimple: DomainMatrix

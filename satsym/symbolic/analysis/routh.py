@@ -45,12 +45,14 @@ class RouthArray:
     auxiliary: tuple[tuple[sp.Expr, ...], ...]
     """The polynomials (coefficients, highest power first) whose derivatives replaced rows of zeros."""
     signs: tuple[int | None, ...]
-    """Signs of the first column as the small numbers tend to zero; ``None`` where the parameters decide."""
+    """Signs of the first column as the small numbers tend to zero; ``None`` if a sign depends on parameters."""
     right: int | None
     axis: int | None
     left: int | None
-    """Numbers of roots with positive, zero and negative real parts, counted with multiplicity; ``None`` where they
-    depend on parameters."""
+    """Numbers of roots with positive, zero and negative real parts, counted with multiplicity.
+
+    ``None`` if a number depends on parameters.
+    """
 
     @property
     def column(self) -> tuple[sp.Expr, ...]:

@@ -37,7 +37,7 @@ class Factor:
     right: int | None
     axis: int | None
     left: int | None
-    """Numbers of the factor's roots with positive, zero and negative real parts; ``None`` where they depend on
+    """Numbers of the factor's roots with positive, zero and negative real parts; ``None`` if they depend on
     parameters."""
 
     @property
@@ -71,8 +71,10 @@ class Spectrum:
     factors: tuple[Factor, ...]
     """The irreducible factors of the characteristic polynomial, by degree and then by name."""
     assumed: tuple[sp.Expr, ...]
-    """Expressions assumed not to vanish: they are zero where eigenvalues of different factors coincide, or roots of one
-    factor."""
+    """Expressions that are assumed not to vanish.
+
+    They are zero if eigenvalues of different factors, or roots of one factor, coincide.
+    """
 
     @property
     def polynomial(self) -> sp.Expr:

@@ -33,14 +33,16 @@ class Stability:
 
     verdict: Verdict
     cause: Cause
-    """The argument that decides the verdict."""
+    """The argument that determines the verdict."""
     eigenvalues: tuple[sp.Expr, ...]
-    """Eigenvalues that the argument is about; empty where they have no closed form."""
+    """Eigenvalues to which the argument refers; empty if they have no closed form."""
     block: int
-    """Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there."""
+    """Size of the largest Jordan block of an eigenvalue on the imaginary axis; 0 if there is no such eigenvalue."""
     conditions: tuple[sp.Expr, ...]
-    """Expressions all of which are positive exactly where all eigenvalues have negative real parts; empty unless
-    parameters decide."""
+    """Expressions that are all positive if and only if all eigenvalues have negative real parts.
+
+    Empty unless stability depends on parameters.
+    """
     reason: str
     """One English sentence without its full stop."""
 

@@ -46,14 +46,14 @@ class Reach:
     rank: int
     """Rank of the matrix."""
     assumed: tuple[sp.Expr, ...]
-    """Expressions that must not vanish for the matrix to have this rank, where that is not certain."""
+    """Expressions that must not vanish for the matrix to have this rank, as far as that could not be decided."""
     pbh: tuple[tuple[sp.Expr, int], ...]
     """For each distinct eigenvalue (or irreducible polynomial without closed-form roots) the rank of [s I - A, B], or
     of s I - A above C (Popov, Belevitch, Hautus)."""
     lost: tuple[Mode, ...]
     """Uncontrollable, or unobservable, modes whose eigenvalues have closed forms."""
     kalman: KalmanForm | None
-    """The Kalman decomposition where the rank is not full."""
+    """The Kalman decomposition if the rank is not full, otherwise ``None``."""
 
     @property
     def full(self) -> bool:

@@ -16,7 +16,7 @@ from satsym.symbolic.equilibria.real_roots import Solutions, solve
 from satsym.symbolic.equilibria.rest import Rest
 
 ZERO = 1e-7
-"""Stiffnesses and eigenvalues count as zero below this fraction of the largest one."""
+"""Fraction of the largest stiffness or eigenvalue below which others count as zero."""
 
 
 class Kind(Enum):
@@ -25,11 +25,10 @@ class Kind(Enum):
     STABLE = "stable"
     """The amended potential has a strict minimum at the equilibrium (Lyapunov)."""
     GYROSCOPIC = "gyroscopically stabilised"
-    """The potential has no minimum, but all eigenvalues lie on the imaginary axis: damping makes the equilibrium
-    unstable."""
+    """The potential has no minimum, but all eigenvalues lie on the imaginary axis; damping then destabilises."""
     UNSTABLE = "unstable"
     DEGENERATE = "degenerate"
-    """A stiffness vanishes, so that linearised motion decides nothing."""
+    """A stiffness vanishes, so that the linearised equations do not decide stability."""
 
 
 @dataclass(frozen=True, eq=False)

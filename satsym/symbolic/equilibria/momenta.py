@@ -28,7 +28,7 @@ from satsym.symbolic.equilibria.rest import Rest
 
 SAMPLES = 60
 WIDTH = 1e-6
-"""Width of an interval of change, relative to the largest value of the parameter."""
+"""Width of the interval to which a change is located, relative to the largest value of the parameter."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def _search(rest: Rest, varied: sp.Symbol) -> Callable[[float], tuple[Equilibriu
 
 
 REACH_FACTOR = 2.0
-"""Largest value of the parameter, relative to the value at which its torque exceeds every other one."""
+"""Largest value of the parameter, as a multiple of the value at which its torque exceeds all other torques."""
 
 
 @dataclass(frozen=True, eq=False)

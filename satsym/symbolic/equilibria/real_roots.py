@@ -22,7 +22,7 @@ from satsym.arrays import Array
 Monomial: TypeAlias = tuple[int, ...]
 
 REAL = 1e-6
-"""Imaginary parts below this value count as rounding."""
+"""Size of an imaginary part below which a root counts as real, because rounding may have caused it."""
 POLISHING = 8
 ROOT_TOLERANCE = 1e-7
 

@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 CORNERS = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.Piecewise)
-"""Functions whose derivatives jump, or which jump themselves."""
+"""Functions that have jumps, or whose derivatives have jumps."""
 
 
 class Until(sp.Function):

@@ -17,14 +17,14 @@ import mpmath as mp
 import sympy as sp
 
 STEPS_PER_BIT = 4
-"""Most steps of the search for a root, for each bit of the working precision: halving takes one."""
+"""Largest number of steps in the search for a root, per bit of the working precision; bisection takes one per bit."""
 POLYNOMIAL_STEPS = 400
-"""Most steps of the iteration for all roots of a polynomial."""
+"""Largest number of steps of the iteration for all roots of a polynomial."""
 
 _classes: WeakValueDictionary[tuple[sp.Expr, tuple[sp.Symbol, ...]], type[Root]] = WeakValueDictionary()
-"""Classes of roots, by the slope that vanishes there and its letters.
+"""(Derivative that vanishes at the root, its symbols) -> class of roots.
 
-Each stays for as long as anything uses it: of two classes with one slope, expressions would differ that are the same.
+A class exists as long as it is used. With two classes for one derivative, equal expressions would differ.
 """
 
 
@@ -34,7 +34,8 @@ class Root(sp.Function):
     is_real = True
     unknown: ClassVar[sp.Symbol]
     slope: ClassVar[sp.Expr]
-    """Derivative of the convex function by its unknown, as an expression in the unknown and letters."""
+    """Derivative of the convex function with respect to its unknown, as an expression in the unknown and the
+    symbols."""
     letters: ClassVar[tuple[sp.Symbol, ...]]
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:

@@ -21,7 +21,7 @@ from satsym.symbolic.model import symbols_of
 from satsym.symbolic.motion import steps as motion
 
 MOST_OPERATIONS_UNNAMED = 300
-"""Operations of the equations above which their common parts get names."""
+"""Number of operations of the equations above which their common subexpressions receive names."""
 
 
 def kinematics(so_far: Derivation) -> Step:

@@ -36,7 +36,7 @@ ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that are printed without parentheses around a single symbol."""
 
 CHOSEN = frozenset("Shorten Stretch Within Clip Max Min".split())
-"""Functions that are printed too tall for a fraction."""
+"""Functions whose print is too tall for a fraction."""
 
 
 class Kind(IntEnum):

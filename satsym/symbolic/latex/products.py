@@ -13,7 +13,7 @@ from satsym.symbolic.factoring import factored
 HUNDREDTHS = (100, 1000, 10000)
 """Denominators of fractions that are printed as decimal numbers."""
 MOST_TERMS = 12
-"""Largest number of terms of a sum in a denominator that is tried as a product."""
+"""Number of terms up to which a factorisation of a sum in a denominator is tried."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.switching import notation as switching_notation
 
 LAPLACE = "s"
-"""The variable of Laplace transforms, which differentiates, unless a variable of the model has this name."""
+"""Name of the Laplace variable, which denotes differentiation, unless a variable of the model has this name."""
 
 
 @dataclass(frozen=True)

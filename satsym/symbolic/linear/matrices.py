@@ -95,7 +95,7 @@ def too_many_letters(system: LinearSystem) -> bool:
 
 
 MOST_ITERATIONS = 100
-"""Largest number of Newton iterations; near the solution each doubles the number of digits."""
+"""Largest number of Newton iterations; near the solution each iteration doubles the number of digits."""
 
 
 def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]], Any]:

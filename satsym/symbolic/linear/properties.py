@@ -37,12 +37,14 @@ from satsym.symbolic.linear.matrices import (
 from satsym.symbolic.model import symbols_of, t
 
 EARLY, LATE, LATE_DIGITS = 30, 60, 720
-"""Powers of ten of the two times between which growth is measured, and the digits needed for matrices of eight states.
+"""Exponents (base ten) of the two times between which growth is measured, and number of digits of the computation.
+
+The number of digits suffices for matrices of eight states.
 """
 DECISIVE = 50.0
-"""A power of time that only exponential growth exceeds."""
+"""Power of time above which measured growth (or below whose negative, decay) can only be exponential."""
 TOLERANCE = 0.4
-"""Largest error of a measured power of time: less than half of one, so that oscillations do not matter."""
+"""Largest error of a measured power of time, less than one half, so that oscillations have no effect."""
 
 
 def stability(so_far: Derivation) -> Step | None:

@@ -41,12 +41,12 @@ _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 _NAMES = {function: name for name, function in _FUNCTIONS.items() if name != "sqrt"}
 _DIGITS = 40
 _OF_CASES = 100
-"""Number of random points at which an expression with cases is evaluated."""
+"""Number of random points at which an expression with case distinctions is evaluated."""
 _NOT_ZERO = 1e-12
 _MOST_COEFFICIENTS = 200_000
-"""Largest number of coefficients of a dense polynomial that is factored only to be printed shorter."""
+"""Largest number of coefficients of a dense polynomial that is factored only to shorten its print."""
 _PER_COEFFICIENT = 20
-"""Calls that are counted for each coefficient of a dense polynomial."""
+"""Number of calls that are counted against the limit of work for each coefficient of a dense polynomial."""
 
 
 class NotAFormula(Exception):

@@ -32,7 +32,7 @@ from satsym.symbolic.pipeline import derive
 from satsym.wording import shown, suggestion
 
 Order: TypeAlias = Callable[[tuple[str, ...]], tuple[int, ...]]
-"""Functions from names of rows or columns to their places in the order of a document."""
+"""Function from names of rows or columns to their positions in the order of a document."""
 
 
 @cache

@@ -18,10 +18,9 @@ from satsym.spec import Variable
 from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
 
 TIME, ANGLE, FACTOR_OFF_REFERENCE = 0.6, 0.75, 1.3
-"""Drawn time of the reference, drawn value of an angle, and factor by which positive states differ from the reference.
-"""
+"""Time at which the reference is drawn, drawn value of angles, and factor of positive states off the reference."""
 CURVE = tuple(2 * pi * k / 48 for k in range(49))
-"""Times of the points on the drawn reference."""
+"""Times of the points on the drawn reference curve."""
 TURNED = 0.25
 """Drawn value of each angle of a body in space, in rad."""
 OBLIQUE = ((1.0, 0.0), (-0.62, -0.42), (0.0, -1.0))

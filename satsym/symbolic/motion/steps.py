@@ -21,8 +21,8 @@ _PLANES = {
     2: {n.ANGULAR_MOMENTUM.name: (0, 1)},
     3: {n.component_of_angular_momentum(n.AXES[k]).name: ((k + 1) % 3, (k + 2) % 3) for k in range(3)},
 }
-"""For each number of inertial components, the angular momenta with the two components that a turn about the axis mixes.
-"""
+"""Number of inertial components -> angular momenta, each with the two components that a rotation about its axis
+mixes."""
 
 
 def reference(so_far: Derivation) -> Step | None:

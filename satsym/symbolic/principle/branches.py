@@ -51,11 +51,11 @@ class Minimum:
     hessian: sp.Matrix | None = None
     weight: sp.Expr = sp.Integer(0)
     laws: tuple[sp.Expr, ...] = ()
-    """Minimisers within the bounds, where H is neither linear nor quadratic in the controls."""
+    """Minimisers within the bounds if H is neither linear nor quadratic in the controls."""
     turned_by: sp.Symbol | None = None
-    """The angle that turns the quantity which a magnitude, such as a thrust, multiplies."""
+    """Angle of rotation of the vector that a magnitude, such as a thrust, multiplies."""
     turned_to: sp.Expr | None = None
-    """The minimising value of that angle, where it has bounds."""
+    """Minimising value of this angle if the angle has bounds."""
 
     @property
     def directed(self) -> bool:

@@ -200,7 +200,7 @@ MINIMUM_COST, COST_FROM_REST = sp.Symbol("least_cost", real=True), sp.Symbol("co
 
 
 reduced_costate_of = named("reduced_lambda_{}")
-"""The symbol for the costate of a state when the exact part of the cost is left out."""
+"""The symbol for the costate of a state in the problem without the exact-differential part of the cost."""
 peak_of = named("{}_peak")
 """The symbol for the largest magnitude of a control."""
 

@@ -16,10 +16,10 @@ from satsym.symbolic.principle import control_sets
 from satsym.symbolic.sets import AdmissibleSet, Angle, Annulus, Ball, Box, Free
 
 SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
-"""The number after the bounds in the ``bounds`` argument of kernels whose controls are directions."""
+"""Smoothing parameter, which follows the bounds in the ``bounds`` argument of kernels whose controls are directions."""
 
 FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
-"""The number after the smoothing where H depends on norms of such directions."""
+"""Factor of norms in H, which follows the smoothing parameter if H depends on the norms of such directions."""
 
 
 def minimum_norm_of(part: Part) -> Variable:
@@ -34,7 +34,7 @@ def minimum_norm_of(part: Part) -> Variable:
 STATED: Mapping[PartKind, type[AdmissibleSet]] = {one.kind: one for one in (Free, Box, Ball, Annulus, Angle)}
 
 SINGLE = "control"
-"""The name of the single control set of a problem that is stated in the short form."""
+"""Name of the only control set of a problem that is stated in the short form."""
 
 
 @dataclass(frozen=True)

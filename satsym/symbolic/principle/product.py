@@ -45,7 +45,7 @@ from satsym.symbolic.principle.set_laws import (
 from satsym.symbolic.principle.stationary import indefinite
 
 STEP = "control_parts"
-"""The name of the step that only derivations over products of control sets have."""
+"""Name of the step that occurs only in derivations over products of control sets."""
 
 
 def applies(so_far: Derivation) -> bool:

@@ -20,13 +20,13 @@ from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.principle.set_laws import bare, found, problem_of
 
 SCALES = (0.1, 1.0, 10.0)
-"""Factors on the costates at each random point."""
+"""Factors of the costates at each random point."""
 
 NEARBY_CONTROLS = 4
-"""Number of admissible controls close to the law of each set with which it is compared."""
+"""Number of admissible controls near the control law with which the law is compared, for each set."""
 
 TRIES = 60
-"""Largest number of costates that are tried until H has a minimum."""
+"""Largest number of random costates that are tried until the Hamiltonian has a minimum."""
 
 
 def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Check:

@@ -27,10 +27,10 @@ SAMPLES, CONTROLS = 10, 12
 """Numbers of random points at which H is evaluated, and of controls at each."""
 
 INVERTED = 8
-"""Largest number of operations of a function that sympy is asked to invert."""
+"""Number of operations up to which SymPy is asked to invert a function."""
 
 REACH = (-3, 0, 3, 9)
-"""Powers of ten of the values at which inverses are tried."""
+"""Exponents (base ten) of the values at which inverse functions are tested."""
 
 PRINTED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
 

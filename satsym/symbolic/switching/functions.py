@@ -31,7 +31,7 @@ from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.switching import notation as s
 
 SCALES = (0.1, 1.0, 10.0)
-"""Factors on the costates at each random point, so that switching functions lie on all sides of their thresholds."""
+"""Factors of the costates at each random point, so that switching functions lie on both sides of their thresholds."""
 
 
 @dataclass(frozen=True)

@@ -25,16 +25,16 @@ REGULARISED = (
     Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the regularised problem", positive=True),
     Variable(MAGNITUDE_FACTOR.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
 )
-"""The numbers after the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
+"""Parameters that follow the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
 
 SMOOTHED = sp.Symbol("H_smoothed", real=True)
 """The Hamiltonian of the regularised problem."""
 
 ON_CURVE = sp.Symbol("position_on_switching_curve", real=True)
-"""The position of the switching curve at the rate of a state."""
+"""Position coordinate of the switching curve at a given rate."""
 
 BEYOND_CURVE = sp.Symbol("beyond_switching_curve", real=True)
-"""How far the position lies beyond the switching curve."""
+"""Distance of the position beyond the switching curve, with sign."""
 
 SIDE = sp.Symbol("side_of_switching_curve", real=True)
 """The side of the switching curve on which a state lies, or the sign of its arc if it lies on the curve."""
@@ -42,7 +42,7 @@ SIDE = sp.Symbol("side_of_switching_curve", real=True)
 TRANSITION, FIRST_ARC = sp.Symbol("transition_time", positive=True), sp.Symbol("first_arc_time", positive=True)
 """Durations of the fastest change of position from rest to rest, and of its first arc."""
 switching_of = named("switching_{}")
-"""The switching function of a control: what multiplies it in H."""
+"""The switching function of a control, its factor in the Hamiltonian."""
 
 
 def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol:
@@ -103,8 +103,8 @@ def constants(model: Model) -> list[str]:
 
 
 BRANCHES = ("", "_positive", "_negative")
-"""Suffixes of singular arcs: of a control without a weight, and of positive and negative ones of a control with a
-weight."""
+"""Suffixes of singular arcs: of a control without weight on its magnitude, and of positive and negative values of one
+with a weight."""
 
 
 def names(problem: Problem) -> dict[str, str]:

@@ -26,7 +26,7 @@ SIDES = {"_positive": 1, "_negative": -1}
 """Sign of a control with a weight on its magnitude, on the two kinds of singular arcs."""
 
 MOST_OPERATIONS = 2000
-"""Largest number of operations of a derivative, before or after reduction, for the search to continue."""
+"""Number of operations of a derivative, before or after reduction, above which the search is abandoned."""
 
 
 @dataclass
@@ -70,20 +70,20 @@ class Search:
     branch: str
     """The control, and the suffix of its threshold in :data:`satsym.symbolic.switching.notation.BRANCHES`."""
     magnitude: Mapping[sp.Expr, sp.Expr]
-    """The replacement of |u| on this kind of singular arc."""
+    """Expression that replaces |u| on this kind of singular arc."""
     threshold: sp.Expr
     """The switching function less its threshold."""
     derivatives: tuple[sp.Expr, ...]
     """The total time derivatives of the switching function, from the first."""
     outcome: str
-    """``"order"`` (the last derivative has the control), ``"closed"`` (the last one follows from those before),
-    ``"impossible"`` (the last one cannot vanish) or ``"open"``."""
+    """``"order"`` if the last derivative contains the control, ``"closed"`` if it follows from those before,
+    ``"impossible"`` if it cannot vanish, otherwise ``"open"``."""
     surface: Surface
-    """The surface on which the derivatives before the last vanish, and the last one if it does not contain the control.
-    """
+    """The surface on which all derivatives except the last vanish; also the last one if it does not contain the
+    control."""
     slope: sp.Expr = sp.Integer(0)
     singular: sp.Expr = sp.Integer(0)
-    """The factor of the control in the last derivative, and the singular control, both on the surface."""
+    """Factor of the control in the last derivative, and the singular control, both on the surface."""
 
     @property
     def order(self) -> int:

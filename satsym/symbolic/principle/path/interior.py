@@ -20,7 +20,7 @@ from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.model import Problem, Requirement, symbols_of, t
 
 STEP = "interior_conditions"
-"""The name of the step that only derivations with points on the way have."""
+"""Name of the step that occurs only in derivations with interior point conditions."""
 
 
 def entry(name: str, place: int, count: int) -> str:

@@ -37,7 +37,7 @@ from satsym.symbolic.principle.path.path_constraints import (
 from satsym.symbolic.principle.pontryagin import costates
 
 STEP = "mixed_constraints"
-"""The name of the step that only derivations with constraints on controls have."""
+"""Name of the step that occurs only in derivations with constraints on controls."""
 
 
 def mixed_constraints(so_far: Derivation) -> Step | None:

@@ -26,16 +26,17 @@ from satsym.symbolic.principle.path import notation as pn
 from satsym.symbolic.principle.pontryagin import costates
 
 COMPETITORS = 20
-"""Controls on the boundary with which the boundary control is compared at each random point."""
+"""Number of other controls on the boundary with which the boundary control is compared at each random point."""
 
 STEP = "constraint_order"
-"""The name of the step that only derivations with constraints on states have."""
+"""Name of the step that occurs only in derivations with state constraints."""
 
 CONTROL_PARTS = "control_parts"
-"""The name of the step in derivations whose law is found set by set; see :mod:`satsym.symbolic.principle.product`."""
+"""Name of the step of derivations whose control law is found set by set; see
+:mod:`satsym.symbolic.principle.product`."""
 
 SWITCHING = "switching_function"
-"""The name of the step in derivations in which H is linear in the controls; see
+"""Name of the step of derivations in which H is linear in the controls; see
 :mod:`satsym.symbolic.switching.singular`."""
 
 
