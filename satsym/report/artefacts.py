@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".py", ".tex", record.SUFFIX)
 SIGNATURE = "Written by satsym from "
-"""The beginning of every generated file; no other file is ever overwritten or removed."""
+"""First words of every generated file; files without them are never overwritten or removed."""
 
 KEPT = "__init__.py"
-"""The only file of the generated folder that people write."""
+"""The only file in the folder of generated files that is written by hand."""
 
 MAX_SECONDS = 900.0
-"""Time limit in seconds for deriving one problem: several times that of the longest shipped one."""
+"""Time limit in seconds for deriving one problem, several times the time of the longest shipped derivation."""
 
 Job: TypeAlias = "tuple[Path, str, Path, float]"
 """A derivation file, the name of a problem in it, the folder of the results, and the time limit."""
 
 FEWEST_IN_PARALLEL = 6
-"""Number of problems from which on several processes derive them."""
+"""Number of problems from which several processes are used to derive them."""
 
 
 def render(

@@ -14,18 +14,18 @@ from satsym.status import BadInput
 _SECONDS = {"ms": 1e-3, "s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0, "hour": 3600.0}
 _SECONDS |= {"d": 86400.0, "day": 86400.0, "year": 31557600.0, "yr": 31557600.0}
 _READABLE = (("s", 600.0), ("min", 7200.0), ("h", 4 * 86400.0), ("day", 3 * 31557600.0), ("year", math.inf))
-"""Units of time, with the length in seconds from which the next one is easier to read."""
+"""Units of time, each with the duration in seconds above which the next unit is easier to read."""
 _LENGTHS = frozenset("m km cm mm au AU astronomical_unit ft mile nautical_mile".split())
 ASTRONOMICAL_UNIT = 149_597_870_700.0
 """The astronomical unit in metres, by definition (IAU 2012, resolution B2)."""
 COMPARABLE = 1e-3
-"""Fraction of a vector's largest component from which another component has the same unit."""
+"""Fraction of a vector's largest component above which another component is shown in the same unit."""
 _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-12: "p", -9: "n", -6: "\N{MICRO SIGN}", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "ms": ("s", -3)}
-"""Units with a prefix: the unit without it, and the power of ten of the prefix."""
+"""Unit with a prefix -> the unit without prefix, and the power of ten of the prefix."""
 _LARGEST_POWERS = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
-"""Units that take prefixes, with the largest power of ten in common use."""
+"""Unit that takes prefixes -> the largest power of ten in common use."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
 

@@ -60,7 +60,7 @@ SCREEN = Look()
 WIDTH = 10.0
 """Width of a page on a screen, in inches."""
 HIGHEST = 40.0
-"""Largest height of a page, in inches; a page grows with its content."""
+"""Largest height of a page, in inches, to which a page may grow with its content."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Sheet:
     letters: float
     """Size of letters, lines and heights, relative to those on a screen."""
     across: int = 3
-    """Largest number of panels side by side."""
+    """Largest number of panels in a row."""
     highest: float = HIGHEST
     """Largest height, in inches."""
 

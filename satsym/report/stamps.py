@@ -24,7 +24,7 @@ class Made(msgspec.Struct, frozen=True):
     """The digests of one problem and its files."""
 
     identity: str
-    """Digest of the declarations; empty where there is none."""
+    """Digest of the declarations; empty if there are none."""
 
     files: dict[str, str]
     """Digests of the generated files, by name."""
@@ -35,7 +35,7 @@ class Stamp(msgspec.Struct, frozen=True):
 
     engine: str
     reached: dict[str, str]
-    """Digests of the files that were read, by path; empty for one that was sought in vain."""
+    """Path -> digest of each file that was read; empty for a file that was searched but does not exist."""
 
     problems: dict[str, Made]
 

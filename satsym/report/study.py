@@ -29,10 +29,13 @@ from satsym.studies.running import Watch, run
 from satsym.wording import printable, shown, suggestion
 
 LOG = "times.log"
-"""The file with the times at which chunks were finished; it is not part of the results, which are reproducible."""
+"""Name of the file with the times at which chunks were finished.
+
+It is not part of the results, which are reproducible.
+"""
 
 MOST_BYTES_READ, NUMBER = 2**24, 8
-"""Largest size of a study.json that is read, and the size of a number, in bytes."""
+"""Largest size of a study.json that is read, and size of a number, both in bytes."""
 
 
 def carry_out(

@@ -23,7 +23,7 @@ from satsym.version import __version__
 from satsym.wording import shown, suggestion
 
 FORMATS = {"oem": ".oem", "czml": ".czml", "stk": ".e", "csv": ".csv"}
-"""The formats, with the endings of file names."""
+"""Exchange formats -> suffixes of file names."""
 
 
 def exported(result: Solution | Simulation, kind: str) -> str:
@@ -80,7 +80,7 @@ def table(motion: Ephemeris) -> str:
 
 ORIGINATOR = "SATSYM"
 UNKNOWN = "UNKNOWN"
-"""The international designator that the standard prescribes for an object without one."""
+"""Designator that the standard prescribes for an object without an international designator."""
 DEGREE = 7
 """Degree of the Hermite interpolation of positions."""
 
@@ -165,7 +165,7 @@ def _plain(text: str) -> str:
 
 
 SYSTEMS = {"EME2000": "J2000", "ICRF": "ICRF", "GCRF": "ICRF"}
-"""The names of frames in STK."""
+"""Reference frames -> their names in STK."""
 MONTHS = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()
 """English names of months, whatever the language of the system."""
 
@@ -224,11 +224,11 @@ def burns(motion: Ephemeris) -> list[str]:
 CZML_DEGREE = 5
 """Degree of the Lagrange interpolation of positions."""
 SHOWN = 60.0
-"""Seconds on the screen for the whole motion."""
+"""Duration in seconds in which Cesium plays the whole motion."""
 GLOBE = "Earth"
 """The body that Cesium shows."""
 OTHER = "#C8C8C8"
-"""Colour of the reference on a black ground."""
+"""Colour of the reference curve on a dark background."""
 
 
 def czml(motion: Ephemeris) -> str:

@@ -19,13 +19,16 @@ from satsym.solution import Simulation, Solution
 from satsym.status import BadInput
 
 MU_TOLERANCE = 0.01
-"""Largest relative difference of a model's gravitational parameter from that of the named body."""
+"""Largest relative difference between the gravitational parameters of the model and of the named body.
+
+A larger difference is refused.
+"""
 FINEST = 2.0 * np.pi / 90.0
-"""Largest angle about the centre between two exported points, in rad, as readers such as STK require."""
+"""Largest central angle between two exported points, in rad, as readers such as STK require."""
 COARSEST = 0.2
-"""Largest angle between two nodes for interpolation, in rad: its error is then 1e-9 of the distance."""
+"""Largest central angle between two nodes for interpolation, in rad; the error is then 1e-9 of the distance."""
 LATEST = 1e10
-"""Largest time from the epoch in seconds, some three hundred years."""
+"""Largest time from the epoch in seconds, about three hundred years."""
 IDLE = 1e-6
 """Fraction of the largest thrust below which thrust counts as zero."""
 

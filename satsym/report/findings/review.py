@@ -15,18 +15,19 @@ from satsym.report.findings import terms
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
-"""Weights of findings that are described in full; others are described in a sentence."""
+"""Weights of findings that are described in full; others are described in one sentence."""
 OPEN = ("undecided", "illegible")
 """Verdicts of rows that could not be judged."""
 _PLACES, _ITEMS = 3, 6
-"""Largest numbers of rows, and of items, that are named before the rest is counted."""
+"""Largest numbers of rows, and of items, that are named; further ones are only counted."""
 _QUOTES = 5
-"""Largest number of right conclusions that are quoted; of more, only the names are given."""
+"""Largest number of correct conclusions that are quoted; if there are more, only their names are given."""
 STANDS = ("confirmed", "imprecise", "notation", "unsound")
-"""Verdicts on rows that are right, if only for another reason, in other letters or up to the last digits."""
+"""Verdicts on rows that are essentially right: exactly, up to the last digits or the notation, or for another
+reason."""
 KINDS = ("equation", "matrix", "algorithm", "number", "unit", "table", "claim")
 IN_WORDS = ("claim", "algorithm", "table", "number")
-"""Kinds of rows whose measured terms are put in words."""
+"""Kinds of rows whose computed terms are expressed in words."""
 _PLACE_WORD = re.compile(r"[a-z]{3,}")
 _END = re.compile(r"[.](?=\s+[`A-Z0-9])")
 

@@ -17,7 +17,7 @@ _SIGNS = {ast.Add: " + ", ast.Sub: " - ", ast.Mult: " × ", ast.Div: "/", ast.Po
 _BINDING = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.Pow: 3}
 _OPENS, _CLOSES = "([{", ")]}"
 _LONGEST_TERM = 240
-"""Largest number of characters of a measured term that is put in words."""
+"""Largest number of characters of a computed term that is expressed in words."""
 
 
 def sentences(measured: str, texts: Texts) -> str:

@@ -29,10 +29,10 @@ from satsym.symbolic.principle.path.interior import named
 from satsym.symbolic.principle.path.notation import holds_controls
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
-"""Steps that begin a section, with the keys of the sections."""
+"""Step that begins a section -> key of the section."""
 
 _NAME = re.compile(r"(?<=\\mathrm\{)[a-z]\w*")
-"""A subscript that is the model's name of a part, or the first word of it."""
+"""Pattern of a subscript that is the model's name of a part, or its first word."""
 
 
 OF_TIME = ("openings", "boundary_value", "statement", "rules", "groups", "boundary", "conclusions", "claims")

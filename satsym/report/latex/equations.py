@@ -21,19 +21,21 @@ from satsym.symbolic.latex.typeset import Typesetter
 LINE = 35.0
 """Width in em that an equation may take beside its number: 160 mm of 11-point type."""
 INDENT = 1.0
-"""Indent of a continued line in em, doubled within parentheses."""
+"""Indent of continuation lines in em; it is doubled within parentheses."""
 
 ROW_PLAIN, ROW_SMALL_FRACTIONS, ROW_ONE_FRACTION, ROW_FRACTIONS = (
     r" \\ " + (rf"\noalign{{\vskip {gap}pt}} " if gap else "") for gap in (0, 2, 5, 10)
 )
-"""Space between rows of a matrix: both without fractions, one with, both with; one step less where fractions are small.
-The denominator in one row must not seem to belong to the next row."""
+"""Space between two rows of a matrix without fractions, with small fractions, and with fractions in one or both rows.
+
+The denominator in one row must not seem to belong to the next row.
+"""
 TALL = 4
-"""Largest number of lines of one equation that are kept on one page."""
+"""Largest number of lines of an equation that is kept on one page."""
 TOGETHER = 3
 """Largest number of lines of a group of equations that is kept on one page."""
 FEWEST = 2
-"""Least number of lines of a group of equations on a page."""
+"""Smallest number of lines of a group of equations on a page."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +48,11 @@ class Row:
     right: tuple[Term, ...]
     """Terms of the left and of the right side."""
     also: str = ""
-    """A further expression that equals the left side, printed between both sides."""
+    """A further expression that equals the left-hand side, printed between both sides."""
     end: str = ""
     """A further relation at the end, such as ``= 0``."""
     again: bool = False
-    """Whether the equation was shown before, and has the number of that place."""
+    """Whether the equation was shown before, and is printed with its earlier number."""
 
     @property
     def left_tex(self) -> str:
@@ -195,7 +197,7 @@ def _environment(name: str, lines: Sequence[str]) -> str:
 
 
 SCRIPT = 0.82
-"""Size of sub- and superscripts, relative to the main font."""
+"""Size of subscripts and superscripts, relative to the main font."""
 
 _TOKEN = re.compile(r"\\[A-Za-z]+\*?|\\.|.", re.DOTALL)
 _ACCENTS = frozenset(rf"\{name}" for name in "dot ddot dddot hat bar tilde vec check breve".split())

@@ -16,7 +16,7 @@ SIZE = 2.6
 """Distance of the body from the centre, in cm."""
 
 WIDE, HIGH = 3.2, 2.2
-"""Ends of the switching curve in a phase plane, in cm from the target."""
+"""Coordinates of the ends of the switching curve in a phase plane, in cm from the target."""
 
 COVERING = "fill=white,inner sep=1pt,outer sep=3pt"
 """TikZ options of a name that covers the lines below it."""

@@ -22,7 +22,7 @@ DEFINED = {
     "D": r"D = \frac{\partial\mathbf{g}}{\partial\mathbf{u}}",
     "H": r"H_{\mathbf{uu}} = \frac{\partial^2 H}{\partial\mathbf{u}^2}",
 }
-"""Definitions of matrices, by the prefix of the names of their entries."""
+"""Prefix of the names of a matrix's entries -> definition of the matrix."""
 TALL = 14
 """Largest number of lines of a matrix; a row with fractions counts as two."""
 GAP = 1.0
@@ -229,7 +229,7 @@ COLUMN = 13.5
 """Width in em that an equation may take in one of two columns, beside its number."""
 BOLD = r"\mathbf{"
 PART = "part_"
-"""The beginning of the names of common subexpressions."""
+"""Prefix of the names of common subexpressions."""
 
 
 def kinematics(context: Context, step: Step) -> Shown:

@@ -7,10 +7,10 @@ import re
 from satsym.report.texts import Texts
 
 PACKAGES = "amsmath, amssymb, array, booktabs, longtable, multicol, xcolor, tikz"
-"""LaTeX packages that a document needs for including the body alone."""
+"""LaTeX packages that a document needs to include the body alone."""
 
 SIZES = r"\DeclareMathSizes{10.95}{10.95}{9}{7} % an index may bear a dot"
-"""Sizes of formulas and of indices, in place of the usual 8 and 6."""
+"""Sizes of formulas and subscripts, instead of the usual 8 and 6 points."""
 
 PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \ifdefined\pdfinfoomitdate % the same bytes whenever it is compiled
@@ -106,7 +106,7 @@ WORKS = {
     "hughes": r"P.~C. Hughes, \emph{Spacecraft Attitude Dynamics}, Wiley, New York, 1986.",
     "kane": r"T.~R. Kane <and> D.~A. Levinson, \emph{Dynamics: Theory and Applications}, McGraw-Hill, New York, 1985.",
 }
-"""Cited works by key, with places for words in the language of the document."""
+"""Keys -> cited works, with placeholders for words in the language of the document."""
 
 _CITED = re.compile(r"\\cite\{([^}]*)\}")
 _WORD = re.compile(r"<(\w+)>")

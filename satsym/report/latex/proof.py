@@ -109,10 +109,10 @@ def _table(rows: list[tuple[str, Enclosure]], texts: Texts) -> str:
 _FORMULA = re.compile(
     r"(?P<number>\b\d+(?:\.\d+)?e[+-]?\d+\b)|(?P<start>(?<=W\(t0\) = )[^;,]+)|(?P<name>W\(t0\)|\bH_uu\b|\bH\b)"
 )
-"""Numbers with powers of ten, and symbols of the theory, within sentences."""
+"""Pattern of numbers with powers of ten, and of mathematical symbols, within sentences."""
 _NAMES = {"W(t0)": "W(t_0)", "H_uu": "H_{uu}", "H": "H"}
 _PLACE = "XFORMULAX"
-"""A placeholder for a formula, or a name, while the words around it are escaped."""
+"""Placeholder for a formula or name while the surrounding words are escaped."""
 _PAGES = re.compile(r"(?<=\d)-(?=\d)")
 
 

@@ -83,7 +83,7 @@ def quantities(context: Context, step: Step) -> str:
 
 
 BY_INSPECTION = frozenset({"declared", "dimensions agree"})
-"""Claims that are checked term by term, not by calculation."""
+"""Claims that are checked term by term, without a calculation."""
 
 
 def checked(texts: Texts, check: Check) -> str:

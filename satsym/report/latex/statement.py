@@ -24,9 +24,9 @@ from satsym.symbolic.principle.path.interior import condition, named
 from satsym.symbolic.principle.path.notation import holds_controls, rate
 
 HEAD = 9
-"""Least number of lines left on a page for the table of quantities to begin there."""
+"""Smallest number of lines that must be left on a page for the table of quantities to begin there."""
 TAIL = 4
-"""Least number of rows of that table on its last page."""
+"""Smallest number of rows of the table of quantities on its last page."""
 
 
 @dataclass(frozen=True)

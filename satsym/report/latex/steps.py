@@ -18,9 +18,9 @@ from satsym.symbolic.principle.transversality import on_a_reference
 from satsym.symbolic.switching.phase_plane import phase_plane
 
 LONGEST_ROW = 12
-"""Largest number of lines of an equation that is shown in a step with several unused ones."""
+"""Largest number of lines of an equation that is shown in a step with several equations that are not used later."""
 ZEROS_IN_A_LINE = 6
-"""Largest number of vanishing quantities on one line."""
+"""Largest number of vanishing quantities listed on one line."""
 
 
 def shown(context: Context, step: Step) -> Shown:

@@ -45,14 +45,14 @@ _SYMBOLS = {
     "\N{NO-BREAK SPACE}": "~",
 }
 LARGEST_DENOMINATOR, LARGEST_DIGITS = 100, 12
-"""Largest denominator of a fraction that replaces a decimal, and the number of digits above which it does."""
+"""Largest denominator of a fraction that replaces a decimal, and the number of digits above which it is replaced."""
 GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
 _NAME = re.compile(
     r"(?P<space>^| )(?P<before>\(?)(?P<sign>\\ensuremath\{-\})?"
     r"(?P<name>[B-HJ-Zb-z]|[a-z]{2,}|[0-9]+)(?=[,;:.)]*(?: |$))"
 )
-"""A word of escaped text that may be a name, or a number; a and I are words."""
+"""Pattern of a word that may be a name or number in escaped text; "a" and "I" are words."""
 _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
 
 

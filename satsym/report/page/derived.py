@@ -27,20 +27,20 @@ if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step
 
 ROOM = 44.0
-"""Width in em that an equation may take, also on paper, which cannot be scrolled."""
+"""Width in em that an equation may take; on paper a wider one could not be scrolled."""
 
 BETWEEN, FRACTIONS, SMALLEST_FONT = 1.0, 0.75, 0.45
-"""Space between columns of a matrix, in em; the size of letters in its fractions, and the least size in a wide one."""
+"""Space between columns of a matrix in em, relative size of letters in its fractions, and smallest size of letters."""
 
 _SIZED = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")
 
 OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
-"""Steps that are unfolded at first."""
+"""Steps that are unfolded when the page is opened."""
 
 _HEADS = ("words", "symbol"), ("words", "name"), ("words", "unit"), ("page", "value"), ("words", "meaning")
 
 DEFINED = "declared"
-"""The beginning of the addresses of definitions, as in documents."""
+"""First part of the addresses of definitions, as in ledgers."""
 
 
 class Derived:

@@ -117,9 +117,9 @@ def scripts(answers: Sequence[Answer]) -> Markup:
 
 
 MOST_ANSWERS = 60
-"""Largest number of answers on a page, evenly chosen among more."""
+"""Largest number of solutions on a page; if there are more, they are selected evenly."""
 ROUNDING = 1e-12
-"""Relative difference up to which two numbers of an instance are equal."""
+"""Relative difference up to which two numbers of an instance count as equal."""
 ARRAYS = ("t", "x", "u", "lam")
 
 

@@ -28,12 +28,12 @@ from satsym.solution import Solution
 Data: TypeAlias = dict[str, Any]
 """An object that is written as JSON."""
 NODES, FEWER = 1200, 200
-"""Largest number of nodes that are kept of a single answer, and of each of several."""
+"""Largest number of nodes that are kept of a single solution, and of each of several solutions."""
 DIGITS = 6
 GRID = 61
-"""Number of points along an axis of a grid of forbidden regions."""
+"""Number of points along each axis of the grid of forbidden regions."""
 THRUST = 0.2
-"""Length of the longest arrow, relative to half the size of the picture."""
+"""Length of the longest thrust arrow, relative to half the size of the picture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Answer:
     solution: Solution
     label: str = ""
     own: bool = False
-    """Whether this is the answer of the page itself, with which a slider begins."""
+    """Whether this is the solution of the page itself, at which the slider starts."""
 
 
 def data(answers: Sequence[Answer]) -> Data:

@@ -24,9 +24,9 @@ SIDE = 400.0
 """Side of the picture, in its own units."""
 FRAMES = 120
 UNSEEN = 0.02
-"""Largest distance from the reference, relative to the orbit, that is a few pixels of the picture at most."""
+"""Largest distance from the reference, relative to the orbit, that is hardly visible in the picture."""
 TURNS, SECONDS = 40, 10.0
-"""Number of pictures of a turning body, and the seconds of all of them, as in the style sheet."""
+"""Number of pictures of a rotating body, and duration of the animation in seconds, as in the style sheet."""
 BODY = 0.55, 0.4, 0.28
 """Half the lengths of the box's sides."""
 _SIGNS = (-1.0, 1.0)
@@ -40,9 +40,9 @@ EDGES = [
 """Edges of the box, shape (3, 2) each."""
 
 GRID = 81
-"""Points on each side of a grid on which it is known where the motion must not be."""
+"""Number of points along each side of the grid on which forbidden regions are computed."""
 MARKED = {"target": "9", "passed": "5"}
-"""Radius of the marks of the final condition, and of points on the way."""
+"""Radii of the marks of the final condition, and of interior points."""
 
 Placing: TypeAlias = Callable[[Array], Array]
 """A function from points of a plane to points of the picture, shapes (2, N)."""
@@ -228,9 +228,9 @@ def _body(name: str, places: Array) -> Markup:
 UNIT_TOLERANCE = 1e-6
 """Largest deviation of a quaternion's norm from one."""
 ANGLES = {"yaw": 2, "roll": 0, "pitch": 1}
-"""The axis of each angle's turn, in the order of the turns."""
+"""Euler angles -> their axes, in the order of the rotations."""
 SMALL_TURN, SEEN = 0.1, 0.5
-"""Largest angle in rad that is magnified, and the angle to which the largest one is magnified."""
+"""Largest angle in rad that is magnified, and the angle to which it is magnified."""
 
 
 @dataclass(frozen=True, eq=False)

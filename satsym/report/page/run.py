@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 WITHOUT_SCRIPTS = Markup('#explore, [href="#explore"] { display: none; }')
-"""A style that hides what needs scripts."""
+"""Style that hides parts of the page that need scripts."""
 
 DIGITS = 10
 """Number of significant digits of given numbers."""
@@ -224,7 +224,7 @@ _COLOURS = {
         for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "HATCH", "ALARM", "GLOBE", "RIM")
     },
 }
-"""Colours of a picture with the page's colours that replace them on light or dark grounds."""
+"""Colours of a picture -> the page's colours for light or dark backgrounds."""
 
 _COLOUR = re.compile("|".join(_COLOURS))
 

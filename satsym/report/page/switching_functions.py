@@ -11,9 +11,9 @@ from satsym.arrays import Array
 from satsym.report.plots.scene import Scene
 
 LINEAR = 1e-9
-"""Largest deviation of H from a straight line, relative to its change, for H to count as linear in a control."""
+"""Largest deviation of H from a straight line, relative to its change, at which H counts as linear in a control."""
 STEP = 1e-6
-"""Size of test controls, relative to the largest norm, that show in which direction H falls."""
+"""Size of test controls that show in which direction H decreases, relative to the largest norm."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 COLOURS = (style.INK, style.BLUE, style.VERMILION, style.GREEN, style.PURPLE, style.GREY)
 DASHES: tuple[Any, ...] = ("-", "-", (0, (6, 2)), (0, (3, 1.5)), (0, (1, 1.2)), "-.")
 SHOWN = 1.12
-"""Drawn duration, relative to the longest transition."""
+"""Displayed duration, relative to the longest transition."""
 COMMANDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 DAMPINGS = (0.2, 5.0)
-"""Least and largest damping of a range, relative to the instance's own."""
+"""Smallest and largest damping of the displayed range, relative to that of the instance."""
 
 
 def pictures(cases: Sequence[Case], look: Look = SCREEN) -> dict[str, files.Content]:

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 POINTS = 2000
 ROUND_ECCENTRICITY = 0.02
-"""Least eccentricity at which the foci are visibly apart in the picture."""
+"""Eccentricity above which the two foci can be distinguished in the picture."""
 SMALLEST_REACH, MOST_REACH = 5.0, 40.0
-"""Least and largest drawn distance of an open orbit, in units of periapsis and of the start's distance."""
+"""Smallest and largest radius to which an open orbit is drawn, as multiples of periapsis and of the initial radius."""
 CENTRE: dict[str, Any] = {"marker": "o", "markersize": 9.0, "color": "#E0A800", "linestyle": "none", "zorder": 3.9}
 EMPTY: dict[str, Any] = {"marker": "x", "markersize": 7.0, "color": style.GREY, "linestyle": "none", "zorder": 3.8}
 NEAREST: dict[str, Any] = {
@@ -49,16 +49,16 @@ class Drawn:
     """The parts of a drawn orbit in the model's unit of length; curves have shape (3, N), points (3,)."""
 
     curve: Array
-    """The whole conic, or the part of an open one that fits."""
+    """The whole conic, or the part of an open conic that fits into the picture."""
     travelled: Array | None
-    """The motion of the instance, at most once round; ``None`` where its time is free, or it meets the centre."""
+    """The motion of the instance, at most one revolution; ``None`` if its time is free or it meets the centre."""
     start: Array
     nearest: Array | None
     farthest: Array | None
     empty: Array | None
-    """Characteristic points; the last is the empty focus, ``None`` where there is none."""
+    """Nearest point, farthest point and empty focus; each is ``None`` if it does not exist."""
     asymptotes: tuple[Array, ...]
-    """Two rays from their common point, shape (3, 2) each; empty except for a hyperbola."""
+    """The two asymptotes of a hyperbola as rays from their intersection, shape (3, 2) each; otherwise empty."""
 
     @classmethod
     def of(cls, found: Survey) -> Drawn:

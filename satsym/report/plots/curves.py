@@ -17,7 +17,7 @@ LARGEST_DRAWN = 1e100
 _COMPLEX_STEP = 1e-30
 _REAL_STEP = 1e-5
 _COMMON_TOLERANCE = 1e-9
-"""Largest difference of equal rates, relative to the largest rate."""
+"""Largest relative difference of two time derivatives that count as equal."""
 
 
 def clean(values: Array) -> Array:
@@ -139,9 +139,9 @@ class Relative:
     """A motion relative to a moving reference point, in curvilinear orbit coordinates; arrays of shape (N+1,)."""
 
     along: Array
-    """Distance ahead, along the circle about the origin through the reference point."""
+    """Distance along the reference circle, ahead of the reference point; the circle is about the origin."""
     radial: Array
-    """Distance above that circle."""
+    """Radial distance from the reference circle, positive outwards."""
 
 
 def relative(positions: Array, reference: Array) -> Relative | None:
@@ -170,10 +170,9 @@ def relative(positions: Array, reference: Array) -> Relative | None:
 
 
 CIRCULAR = 1e-6
-"""How far rates may be from zero on a circular orbit, relative to its velocity and to its acceleration."""
+"""Largest deviation of time derivatives from those of a circular orbit, relative to its velocity and acceleration."""
 NUDGE, EXACT = 0.1, 1e-12
-"""Distance from the trajectory at which rates are compared, relative to the sizes of states, and their largest
-difference."""
+"""Distance from the trajectory at which derivatives are compared, relative to the states, and their tolerance."""
 _NAME = re.compile(r"(?:|[pqrs]_?|pos_?)([xyz])")
 
 

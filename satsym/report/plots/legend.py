@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HANDLE, CHARACTER = 0.62, 0.08
-"""Inches on a screen of the sample of an entry, and of an average character of its label."""
+"""Width in inches on a screen of the sample of an entry, and of an average character of its label."""
 PER_INCH = 0.71
 """Number of entries side by side for each inch of a page."""
 Entry = tuple[Any, str]

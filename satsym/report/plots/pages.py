@@ -121,7 +121,7 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
 
 
 MOST_PANELS = 8
-"""Largest number of states, and of controls, on this page; all of them are on pages of their own."""
+"""Largest number of states, and of controls, on the overview; the other pages show all of them."""
 
 
 def overview(scene: Scene) -> Figure | None:
@@ -217,11 +217,11 @@ def _facts(scene: Scene) -> list[str]:
 
 
 ANEW = 100.0
-"""Ratio of a residual to the one before it that begins another phase."""
+"""Ratio of a residual to the one before above which a new phase of the iteration begins."""
 EXACT = 1e-16
-"""Smallest drawn value, relative to the largest; smaller ones are rounding."""
+"""Smallest displayed value relative to the largest; smaller values are due to rounding."""
 ELSEWHERE = 0.05
-"""Relative difference from the cost of the answer from which iterations ended at another solution."""
+"""Relative difference from the cost of the solution above which iterations ended at another solution."""
 
 
 def convergence(scene: Scene) -> Figure | None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ROOM = 0.15
-"""Space beside a path, relative to its width, for the continuation of the switching curve."""
+"""Margin beside a path, relative to its width, into which the switching curve is continued."""
 MOST_PLANES = 4
 """Largest number of phase planes that are drawn."""
 
@@ -37,11 +37,11 @@ class Plane:
     across: Reading
     up: Reading
     forbidden: tuple[Field, ...] = ()
-    """Path constraints that depend on these two states alone."""
+    """Path constraints that depend only on the two states of the plane."""
     switching: Field | None = None
-    """A function that is zero on a known switching curve of a minimum-time problem; ``None`` without one."""
+    """Function that vanishes on the known switching curve of a minimum-time problem, otherwise ``None``."""
     passed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
-    """Points on the way, as they are shown."""
+    """Interior points as displayed."""
 
     @property
     def target(self) -> tuple[float, float] | None:

@@ -54,10 +54,12 @@ MARGIN = 1.25
 SIDE = 6.6
 """Side of the page, in inches."""
 FURTHEST_ON_A_SCALE, NOUGHT = 100.0, 1e-8
-"""Ratio of the farthest to the nearest eigenvalue above which decades have equal lengths, and the fraction of the
-farthest below which an eigenvalue is zero up to rounding."""
+"""Ratio of the largest to the smallest eigenvalue above which the scale is logarithmic, and threshold of zero.
+
+The threshold is the fraction of the largest eigenvalue below which others count as zero.
+"""
 MARKED = 3
-"""Largest number of labelled decades on each side."""
+"""Largest number of labelled decades on each side of zero."""
 
 
 def of_analysis(found: Analysis) -> Figure:

@@ -11,7 +11,7 @@ from satsym.report.display import number, times_ten_to
 from satsym.report.said import decimal
 
 PLAIN = 1e-3, 1e6
-"""Range of the largest tick within which no power of ten is used."""
+"""Range of the largest tick within which ticks are printed without a power of ten."""
 
 
 class WithPowers(ScalarFormatter):

@@ -13,20 +13,20 @@ from satsym.report.display import Scale, labelled, together
 from satsym.report.plots.series import Series
 
 SMALL_DEVIATION = 0.02
-"""Fraction of the value below which a deviation is shown itself, because it would be invisible in the value."""
+"""Ratio of deviation to value below which the deviation is plotted, since it would be invisible in the value."""
 BURIED = 1e-3
-"""Fraction of the value below which a variation is counted from the first value, since ticks would need many digits."""
+"""Ratio of variation to value below which values are plotted relative to the first, since ticks need many digits."""
 FURTHEST, GLIMPSE = 3.0, 0.4
-"""Distance beside the main curve, in its widths, up to which everything is shown; and the width shown of what is
-farther."""
+"""Distance beside the main curve, in widths of it, within which other curves are shown completely, and displayed width
+of curves that are farther away."""
 FREE = 1.5
-"""Up to so many widths of a path the uncontrolled motion beside it is shown whole."""
+"""Distance beside a path, in widths of the path, within which the uncontrolled motion is shown completely."""
 IN_SIGHT = 2.0
-"""Largest distance at which a bound is shown, in widths of the rest."""
+"""Largest distance at which a bound is shown, in widths of everything else."""
 LEVELS = 400
-"""Number of values at which the edge of a forbidden region is searched."""
+"""Number of values at which the boundary of a forbidden region is searched."""
 ROUNDING = 1e-9
-"""Fraction of the size below which a variation counts as zero."""
+"""Variation relative to the magnitude of a quantity below which it counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,8 @@ class Reading:
     target: float | None
     lower: float
     upper: float
-    """Values and bounds as in :class:`~satsym.report.plots.series.Series`, in that unit and relative to the datum."""
+    """Values and bounds of :class:`~satsym.report.plots.series.Series`, in the displayed unit and relative to the
+    datum."""
     low: float
     high: float
     """Lower and upper end of the axis."""

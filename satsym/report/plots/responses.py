@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
 NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 3.2}
 SMALL_ROW = 1.7
-"""Height of a row of panels on a page that cannot grow downwards, in inches on a screen."""
+"""Height in inches on a screen of a row of panels on a page of fixed height."""
 ROOM_BEYOND = 1.5
-"""Width shown beyond the linear response for a nonlinear one, relative to its width."""
+"""Displayed width beyond the linear response for a nonlinear response, relative to the width of the former."""
 
 
 @dataclass(frozen=True, eq=False)

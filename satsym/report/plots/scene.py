@@ -18,7 +18,7 @@ from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
 ROUNDING = 1e-9
-"""Largest distance from the reference, relative to its size, at which a state is on it."""
+"""Distance from the reference, relative to its size, up to which a state counts as being on the reference."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,22 +26,24 @@ class Scene:
     """A solution or a simulation, with what is drawn beside it."""
 
     result: Solution | Simulation
-    """What was solved or simulated."""
+    """The solution or simulation that is plotted."""
     name: str
     """Name of the motion in a legend."""
     times: Array
     time_unit: str
-    """Nodes in a readable unit, and that unit, ``"1"`` where the model has no unit of time."""
+    """Nodes in a readable unit of time, and that unit; ``"1"`` if the model has no unit of time."""
     time_factor: float
-    """Number of model units of time in that unit."""
+    """Number of the model's units of time in that unit."""
     x: Array
     u: Array
     lam: Array | None
-    """Values of the result, NaN where they cannot be drawn; ``lam`` is ``None`` for a simulation."""
+    """Values of the result, NaN if they cannot be plotted; ``lam`` is ``None`` for a simulation."""
     reference: Array | None
     free: Array | None
-    """States of the reference curve and of the uncontrolled motion at the nodes; ``None`` where there is none or,
-    for the latter, where it is the motion itself or on the reference."""
+    """States of the reference curve and of the uncontrolled motion at the nodes.
+
+    ``None`` if there is none; the uncontrolled motion also if it equals the motion itself or lies on the reference.
+    """
 
     @classmethod
     def of(cls, result: Solution | Simulation) -> Scene:

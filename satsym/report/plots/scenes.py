@@ -28,11 +28,11 @@ LENGTH = 0.4
 LONGEST_ARROW = 0.13
 """Length of the longest arrow, relative to the size of the picture."""
 CLOSED = 0.05
-"""Distance of the end from the start of a curve, relative to its size, at which it counts as closed."""
+"""Distance between the ends of a curve, relative to its size, up to which the curve counts as closed."""
 NEIGHBOURHOOD = 0.3
-"""Largest distance from the reference, relative to the orbit, of a path that is also shown relative to it."""
+"""Largest distance from the reference, relative to the orbit, for which the path is also shown relative to it."""
 MOVED = 1e-4
-"""Change of a state, relative to its size or to one, that shows whether the place depends on it."""
+"""Relative change of a state for testing whether the position depends on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,16 +48,16 @@ class Orbit:
     relative: curves.Relative | None
     free_relative: curves.Relative | None
     ends_there: bool
-    """Whether the motion is required to end at the place of the reference."""
+    """Whether the motion is required to end at the position of the reference."""
     central: bool = True
     """Whether the motion is about the origin."""
     by_states: bool = False
-    """Whether the place follows from states, without a position vector."""
+    """Whether the position follows from the states, without a position vector."""
     target: Array | None = None
-    """Where the motion has to end, shape (2 or 3, 1)."""
+    """Required final position, shape (2 or 3, 1)."""
     around: Surroundings = NOTHING
     thrusts: bool = True
-    """Whether the effect of the controls is called thrust."""
+    """Whether the controls are called thrust."""
 
     @classmethod
     def of(cls, scene: Scene) -> Orbit | None:

@@ -22,11 +22,11 @@ from satsym.solution import Simulation
 from satsym.spec import PRODUCT, ProblemSpec, Variable
 
 ON_BOUND = 1e-7
-"""Largest distance of a saturated control from its bound, relative to the width of its range."""
+"""Distance of a control from its bound, relative to the width of its range, up to which it counts as saturated."""
 
 
 STEADY = 1e-6
-"""Variation of a constant Hamiltonian, relative to its terms, above which it is visible."""
+"""Variation of a constant Hamiltonian, relative to its terms, above which the variation is displayed."""
 
 STEP = 1e-30
 """Relative size of complex steps."""
@@ -49,7 +49,7 @@ class Series:
     meaning: str
     """Unit and meaning, as in :class:`~satsym.spec.Variable`."""
     values: Array
-    """Values at the nodes, NaN where nothing is drawn."""
+    """Values at the nodes, NaN where nothing is plotted."""
     reference: Array | None = None
     free: Array | None = None
     """Values on the reference curve, and in the uncontrolled motion."""
@@ -59,25 +59,25 @@ class Series:
     """Whether the quantity is an angle."""
     lower: float = -math.inf
     upper: float = math.inf
-    """Bounds, infinite where there are none."""
+    """Bounds, infinite if there are none."""
     active: NDArray[np.bool_] | None = None
     """Nodes at which the quantity is at a bound."""
     switching: tuple[float, ...] = ()
-    """Times at which the quantity meets or leaves a bound, in the scene's unit."""
+    """Times at which the quantity meets or leaves a bound, in the displayed unit of time."""
     said: str = SWITCHED
-    """The English description of these times."""
+    """The English description of the marked times."""
     size: float = 0.0
-    """A large value of the quantity, by which rounding errors are recognised."""
+    """Typical magnitude of the quantity, by which rounding errors are recognised."""
     steady: float = 0.0
-    """Fraction of the size below which a variation does not matter."""
+    """Fraction of the magnitude below which a variation is insignificant."""
     from_first: bool = False
     """Whether values are shown relative to the first one."""
     from_zero: bool = False
     """Whether the axis must include zero."""
     forbidden: tuple[Forbidden, ...] = ()
-    """What path constraints forbid: positive for values at the nodes, of shape (M, N+1), that are not allowed."""
+    """Functions of path constraints, positive for forbidden values (M, N+1) at the nodes."""
     plain_unit: bool = False
-    """Whether the unit stays unchanged, so that neighbouring panels agree."""
+    """Whether the unit is left unchanged, so that neighbouring panels have the same unit."""
 
     @property
     def symbol(self) -> str:

@@ -32,11 +32,11 @@ PANEL = 3.6
 SHORT_RANGE = 1e3
 """Ratio of the last to the first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
-"""Greys of cells without a number, one for each status."""
+"""Shades of grey for cells without a number, one for each status."""
 FEWEST, LEVELS = 4, 8
-"""Least number of rows and columns of a map with contours of the cost, and the approximate number of contours."""
+"""Smallest number of rows and columns of a map with contours of the cost, and approximate number of contours."""
 OUTER = (0.01, 0.99)
-"""Quantiles beyond which values may be outliers."""
+"""Quantiles outside which values may be outliers."""
 
 MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
 COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
 SKY = "#56B4E9"
-"""The colour of the same palette for dark grounds."""
+"""Light blue of the same palette, for dark backgrounds."""
 INK, SOFT, GREY, PALE_GREY, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
 HATCH = "#A6A6A6"
 SHADE = 0.12
@@ -86,22 +86,22 @@ ARROW: dict[str, Any] = {
 GRID = 241
 """Number of points along each axis of the grid for forbidden regions."""
 MARGIN = 1.3
-"""Inches on a screen beside a panel, for its ticks and its label."""
+"""Space beside a panel for its ticks and label, in inches on a screen."""
 TITLE = 9.5
 """Size of the title of a panel, in points on a screen."""
 NARROWEST = 3.0
-"""Least width of a panel with its margin on a page that cannot grow downwards, in inches on a screen."""
+"""Smallest width of a panel with its margin on a page of fixed height, in inches on a screen."""
 HINTED = 1.1
-"""Letters on a coarse grid of pixels are wider than their outlines by up to this factor."""
+"""Factor by which letters on a coarse pixel grid may be wider than their outlines."""
 FEWEST = 12
-"""Letters of a line."""
+"""Smallest number of letters to which a line of a title is shortened."""
 SHORTEST = 0.8
-"""Least height of the room above a panel, in inches on a screen."""
+"""Smallest width available above a panel for its title, in inches on a screen."""
 DPI = 160
 _SCALED: tuple[Any, ...] = tuple(
     "font.size axes.labelsize axes.titlesize axes.titlepad xtick.labelsize ytick.labelsize legend.fontsize".split()
 )
-"""Settings below that are in points."""
+"""Settings of matplotlib that are given in points and scaled with the page."""
 _UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _RC: dict[Any, Any] = {
     "font.size": 10.5,
@@ -147,11 +147,11 @@ _RC: dict[Any, Any] = {
 
 
 _LOOK: ContextVar[Look] = ContextVar("look", default=SCREEN)
-"""While a style is applied."""
+"""The look of the page while a style is applied."""
 _LETTERS: ContextVar[float] = ContextVar("letters", default=1.0)
 """Size of letters of the page that was begun last, relative to a screen."""
 _BEGUN: WeakKeyDictionary[Figure, float] = WeakKeyDictionary()
-"""The letters of each page."""
+"""Page -> size of its letters, relative to a screen."""
 
 
 @contextmanager

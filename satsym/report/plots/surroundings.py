@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Placing: TypeAlias = Callable[[Array], Array]
-"""From states (n, N) to places (2 or 3, N)."""
+"""Function from states (n, N) to positions (2 or 3, N)."""
 IDLE = 1e-6
-"""Thrust that is smaller than this share of the largest is none."""
+"""Fraction of the largest thrust below which thrust counts as zero."""
 BURNING = 0.02, 0.98
-"""Share of the time with thrust between which burns are drawn apart from coasts."""
+"""Range of the fraction of time with thrust within which burns are distinguished from coasting."""
 UNMOVED_TOLERANCE = 1e-9
-"""Change of values, relative to the largest of them, up to which a region does not move."""
+"""Relative change of values up to which a forbidden region counts as fixed."""
 MOST_TURNS = 20
-"""Another orbit is followed until it closes, for this many times the duration at most."""
+"""Largest number of durations for which another orbit is followed until it closes."""
 STEPS = 720
-"""Number of steps in which a motion is integrated, over each duration."""
+"""Number of integration steps in each duration."""
 SMALLEST_BODY = 0.02
 """Smallest radius of a body that is drawn to scale, relative to the size of the path."""
 
@@ -58,17 +58,17 @@ class Surroundings:
 
     forbidden: tuple[Forbidden, ...] = ()
     passed: Array | None = None
-    """Places of points on the way."""
+    """Positions of the interior points."""
     other: Array | None = None
-    """The uncontrolled motion that the end has to join, once round."""
+    """The uncontrolled motion that the final state has to join, over one revolution."""
     other_start: Array | None = None
-    """The initial place of the target on that motion."""
+    """Initial position of the target on that motion."""
     moving: Array | None = None
-    """Places of the target at equal steps of time from the start to the end."""
+    """Positions of the target at equidistant times from the initial to the final time."""
     burns: Array | None = None
-    """The path where there is thrust, NaN elsewhere; ``None`` where there always is some."""
+    """The path where there is thrust, NaN elsewhere; ``None`` if there is thrust everywhere."""
     radius: float = 0.0
-    """Radius of the body at the origin; 0 where it is not known, or too small to be seen."""
+    """Radius of the body at the origin; 0 if it is unknown or too small to be visible."""
     body: str = ""
 
     @classmethod
@@ -111,7 +111,7 @@ class Surroundings:
 
 
 NOTHING = Surroundings()
-"""The surroundings of a path of which nothing more is known."""
+"""The surroundings of a path without any such objects."""
 
 
 def draw(axes: Axes, around: Surroundings, view: View, datum: Array, scale: float) -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 Pictures: TypeAlias = dict[str, files.Content]
-"""Name -> content of each file."""
+"""Name of a picture -> content of its file."""
 
 
 def of_subject(

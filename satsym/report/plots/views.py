@@ -11,11 +11,11 @@ from satsym.arrays import Array
 from satsym.report.said import say
 
 FLAT = 1e-6
-"""Largest distance of a plane path from its plane through the origin, relative to its size."""
+"""Largest distance from a plane through the origin, relative to the size of a path, at which it counts as plane."""
 AZIMUTH, ELEVATION = 35.0, 25.0
 """Direction of an oblique view in degrees: about the third axis, and above the plane of the others."""
 ROUND = 1e-3
-"""Relative variation of the distance below which no nearest point is distinguished."""
+"""Relative variation of the distance below which no nearest point is marked."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class View:
     labels: tuple[str, str]
     """Labels of the two axes."""
     title: str = ""
-    """What the picture shows, where the labels do not say it."""
+    """Title of the picture, if the labels do not say what it shows."""
     spatial: bool = False
-    """Whether the view is oblique, so that no axis of it is one of the motion."""
+    """Whether the view is oblique, so that its axes are not those of the motion."""
 
 
 def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:

@@ -20,7 +20,10 @@ from satsym.solvers.certificate import certify
 from satsym.status import Verdict
 
 NOT_COMPARED = frozenset(("satsym", "message", "iterations", "wall_s", "certificate", "instance_file", "continuation"))
-"""Keys of result.json on how an answer was found, which no other file shows; the certificate is computed anew."""
+"""Keys of result.json about how a solution was found, which occur in no other file and are not compared.
+
+The certificate is computed anew.
+"""
 
 
 @dataclass(frozen=True)

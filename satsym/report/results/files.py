@@ -26,7 +26,7 @@ Content: TypeAlias = Callable[[IO[bytes]], object]
 """A function that writes a file's content to a stream."""
 
 BESIDE = re.compile(r"\.(\d+)\.tmp\Z")
-"""The ending of an unfinished file's name, with the number of the process that writes it."""
+"""Pattern of the suffix of an unfinished file, which contains the number of the process that writes it."""
 
 
 def text(content: str) -> Content:
@@ -155,13 +155,14 @@ def _alive(process: int) -> bool:
 
 MOST_MEMBERS = 16
 LONGEST_DIRECTORY = 2**16
-"""Largest size of an archive's table of contents, in bytes."""
+"""Largest size in bytes of an archive's table of contents."""
 MOST_AXES, LONGEST_AXIS = 2, 2**31
 
 _END = struct.Struct("<4s4H2LH")
-"""The end of a zip archive: signature, disks, numbers of members, size and place of the directory, a comment."""
+"""Record at the end of a zip archive: signature, disks, numbers of members, size and position of the table of contents,
+comment."""
 _LARGER = b"PK\x06\x07"
-"""Signature of a directory of more than 4 GiB, which is refused."""
+"""Signature of the table of contents of an archive of more than 4 GiB, which is refused."""
 
 
 def unpacked(content: bytes) -> dict[str, NDArray[Any]]:

@@ -31,7 +31,7 @@ ANALYSIS = (
     *("equilibrium", "A", "B", "C", "eigenvalues", "modes", "jordan_blocks", "characteristic_polynomial", "routh"),
     *("stability", "controllability", "observability", "exact", "exact_omitted"),
 )
-"""The keys of an analysis, all ``None`` where there is no point of linearisation."""
+"""Keys of an analysis, all of which are ``None`` if there is no point of linearisation."""
 
 
 def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None, omitted: str = "") -> dict[str, Any]:

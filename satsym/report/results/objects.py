@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 SCHEMA = 1
-"""Version of these objects, increased where a key changes its meaning or is removed."""
+"""Version of the result objects, increased when a key changes its meaning or is removed."""
 
 
 def head(command: str, spec: ProblemSpec, instance: Instance | None, status: Status) -> dict[str, Any]:
@@ -210,7 +210,7 @@ def _at(row: Array, place: int) -> float | None:
 
 
 COST = "cost"
-"""The unit of J where it does not follow from the units of the model."""
+"""The unit of J if it does not follow from the units of the model."""
 
 
 def time_unit(spec: ProblemSpec) -> str:

@@ -12,11 +12,11 @@ from satsym.control_set import stated_constraints
 from satsym.instance import Instance
 
 PROBES = 24
-"""Number of places of a trajectory at which the dependence of a constraint is tested."""
+"""Number of points of a trajectory at which the dependence of a constraint is tested."""
 MOVED = 0.1
-"""Change of each quantity for that test, relative to its size."""
+"""Relative change of each quantity in the test of dependence."""
 EXACT = 1e-12
-"""Change of a constraint, relative to its size, up to which it does not depend on the changed quantity."""
+"""Relative change of a constraint up to which it does not depend on the changed quantity."""
 
 
 @dataclass(frozen=True, eq=False)

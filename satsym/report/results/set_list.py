@@ -18,7 +18,7 @@ MOST_FILES = 200
 LONGEST_LIST = 2**24
 """Largest size of a result.json that is read, in bytes."""
 LARGEST_READ = 2**28
-"""Largest size of a file that is read, in bytes: twice the largest that an instance can lead to."""
+"""Largest size in bytes of a file that is read, twice the size that an instance can lead to."""
 BLOCK = 2**20
 
 
@@ -37,7 +37,7 @@ class _List(msgspec.Struct):
 
 
 STUDY, ASKED = "study", "study.json"
-"""The command whose sets take long to compute, and the first file that it writes."""
+"""The command whose results take long to compute, and the first file that it writes."""
 
 
 def unusable(path: Path, why: str, command: str = "", more: str = "") -> BadInput:

@@ -34,7 +34,7 @@ NEXT = ".satsym-next"
 STAGING = ".satsym-new-"
 
 KEPT_APART = (STUDY, "plot")
-"""Commands whose sets replace only their own kind."""
+"""Commands whose result folders replace only results of the same command."""
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ class Found:
     """A set of files that was read."""
 
     folder: Path
-    """Folder of the set."""
+    """Folder of the result."""
     command: str
-    """Command that wrote the set."""
+    """Command that wrote the result."""
     result: bytes
-    """The text of its result.json."""
+    """Text of the file result.json."""
     listed: Mapping[str, Listed]
-    """Names of the other files of the set."""
+    """Names of the other files of the result."""
     contents: Mapping[str, bytes]
     """Contents of the requested files."""
 
@@ -265,7 +265,7 @@ def listed(folder: Path) -> set[str]:
 
 
 PATIENCE, PAUSE = 30.0, 0.01
-"""Seconds to wait for another process, and between two checks."""
+"""Seconds of waiting for another process, and seconds between two attempts."""
 
 
 @contextmanager

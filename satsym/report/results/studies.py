@@ -28,16 +28,19 @@ from satsym.studies.parts import Parts
 from satsym.studies.rows import TEXTS, Column, Row
 
 SHOWN = 5
-"""Number of worst rows, and of rows without an answer, for which a command is given."""
+"""Number of worst rows, and of rows without a solution, for which a command is given."""
 
 DRAWN_FIRST, MOST_DRAWN = (Column.OBJECTIVE, Column.T_FINAL, Column.COST_FROM_INITIAL), 3
-"""Columns that are drawn first, and the number of drawn columns."""
+"""Columns that are plotted first, and largest number of plotted columns."""
 
 MOST_READ, ROUNDING = 16, 1e-9
-"""Number of columns that are examined, and the relative difference that may be rounding."""
+"""Number of columns that are examined, and relative difference that is attributed to rounding."""
 
 LARGEST_FILE, FILES = 2**28, 100
-"""Size of a file of trajectories in bytes, larger only to keep the number of files at about the second number."""
+"""Intended size in bytes of a file of trajectories, and approximate largest number of such files.
+
+Files are larger only to limit their number.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +76,7 @@ class Merged:
     study: Study
     parts: Parts
     branches: Branches | None = None
-    """The result of comparing neighbouring rows, if they were compared."""
+    """The result of comparing neighbouring rows; ``None`` if they were not compared."""
 
     def rows(self) -> Iterator[tuple[int, list[float], Row]]:
         """Yield the number of each row from 0, its values, and its result."""

@@ -26,11 +26,11 @@ from satsym.status import BadInput
 from satsym.studies.rows import TEXTS, Column, Row, Scalar
 
 BEFORE, AFTER = (Column.ROW, Column.KEY), (Column.STATUS, Column.MESSAGE)
-"""Columns before the values of varied numbers, and after them."""
+"""Columns before the values of the varied numbers, and columns after them."""
 
 
 Rows: TypeAlias = Callable[[], Iterable[tuple[int, list[float], Row]]]
-"""A function that yields, for each row, its number from 0, its values, and its result."""
+"""Function that yields, for each row, its index from zero, its values and its result."""
 
 
 def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows, form: TableFormat = TableFormat.CSV) -> Content:
@@ -175,7 +175,7 @@ def _cell(value: Scalar) -> str:
 
 
 GROUP = 16384
-"""Number of rows that are written at a time, and held in memory."""
+"""Number of rows that are written, and held in memory, at a time."""
 
 
 def require() -> None:

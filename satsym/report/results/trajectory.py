@@ -36,10 +36,10 @@ COMMANDS = ("solve", "simulate")
 """Commands whose results hold a trajectory."""
 
 _LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
-"""The form of the names of methods and feedbacks."""
+"""Pattern of the names of methods and feedback laws."""
 
 EQUAL_STATES = 1e-9
-"""Largest difference of equal initial states, relative to their size on the way."""
+"""Largest relative difference up to which initial states count as equal."""
 
 
 class _Kept(msgspec.Struct):

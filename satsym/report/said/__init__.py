@@ -20,22 +20,22 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 VARIABLE = "SATSYM_LANG"
-"""Variable of the environment with the language, if no other is requested."""
+"""Environment variable of the language, used if no language is requested."""
 
 _BREAK = re.compile(r"(; |(?<=[.:]) )")
 """Separators of clauses and sentences of a message, each of which may have its own translation."""
 _PLACE = re.compile(r"(?:(?:\[[\w.]+\]|--[\w-]+) )?\S+:")
-"""The beginning of a message that is not translated: a file, an instance, a key."""
+"""Pattern of the beginning of a message that is not translated: a file, an instance or a key."""
 _HOLE = re.compile(r"<([a-z_]+)>")
 _SENTENCE = re.compile(r"\b(?:the|is|are|has|have|not|no|which|with|must|cannot|be)\b")
-"""English words that show that a text is a sentence and not a name."""
+"""Pattern of English words that distinguish a sentence from a name."""
 _QUOTED = re.compile(r"`[^`]*`|\"[^\"]*\"|'[^']*'")
 _FOREIGN = "error"
-"""The place of a library's message, which is not translated."""
+"""Name of the placeholder for a message of a library, which is not translated."""
 _TEXT_PLACE = "said_"
-"""The beginning of names of places that hold texts to be translated; others hold names and numbers."""
+"""Prefix of placeholders for texts that are translated; other placeholders stand for names and numbers."""
 _MIXED, _BETWEEN = ("arcs", "got"), re.compile(r"(, | \(|\))")
-"""Places with lists of names that contain translated words, and the separators of such lists."""
+"""Placeholders for lists of names that contain translated words, and pattern of the separators in such lists."""
 _ASKED: ContextVar[str | None] = ContextVar("language", default=None)
 
 

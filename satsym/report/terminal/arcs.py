@@ -16,7 +16,7 @@ from satsym.solution import Solution
 SHOWN_TIMES = 6
 """Largest number of switching times, or arcs, of one control that are listed."""
 SHOWN_ARCS = 9
-"""Largest number of arcs of a structure that are put in words; longer ones keep the signs of the message."""
+"""Largest number of arcs of a structure that is expressed in words; longer structures keep the signs of the message."""
 _AT_BOUND = 1e-9
 _SIGNS = {"+": "upper bound", "-": "lower bound", "0": "zero", "s": "singular", "b": "boundary"}
 _THRUST = {"+": "burn", "-": "coast", "0": "coast", "s": "singular"}

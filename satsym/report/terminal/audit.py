@@ -39,11 +39,11 @@ _INDENT = "  "
 _LABEL = 10
 _BAR = 24
 _CHARTED = 3
-"""Number of rows from which on a chart is shown."""
+"""Number of rows from which a chart is shown."""
 _SHORT_FORMULA = 30
 """Largest number of characters of a formula that is printed after its verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
-"""The parts of a long word that may be on different lines: it is broken after signs."""
+"""Pattern of the parts of a long word, which may be divided between lines after signs."""
 
 
 def audit_text(

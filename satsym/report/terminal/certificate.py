@@ -72,7 +72,7 @@ _HOLDS = {
     "switching function vanishes on an arc": "switching functions zero at switching times only",
     "width of the cost interval": "cost interval narrow",
 }
-"""What is true where a check passes, by check; those that can only fail are not listed."""
+"""Check -> what is true if it passes; checks that are reported only when they fail are not listed."""
 
 _FAILS = {
     "another minimiser of H remains equally good": "another minimiser of H remains equally good",
@@ -104,7 +104,7 @@ _FAILS = {
     "switching function vanishes on an arc": "switching function zero within an arc",
     "width of the cost interval": "cost interval too wide",
 }
-"""What is wrong where a check fails, by check; the names of all others say it."""
+"""Check -> what is wrong if it fails; the names of the other checks say it themselves."""
 
 _NAMED = {
     re.compile(r"cheaper by: (.*)"): "no cheaper competitor: <said_kind>",
@@ -112,7 +112,7 @@ _NAMED = {
         "transversality condition at the initial time holds: <said_kind>"
     ),
 }
-"""Checks whose names contain a name, with what is true where they pass."""
+"""Patterns of checks whose names contain a name -> what is true if they pass."""
 
 _MEANINGS = {
     Verdict.CERTIFIED: "strict local minimum",
@@ -120,7 +120,7 @@ _MEANINGS = {
     Verdict.EXTREMAL_ONLY: "first-order conditions hold; not proved to be a strict local minimum",
     Verdict.FAILED: "an optimality condition is violated",
 }
-"""The claim of each verdict, in the words that solve, study and compare share."""
+"""Verdict -> its meaning, in the words that solve, study and compare share."""
 
 
 def meaning(verdict: Verdict) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from satsym.analysis.comparison import Case, Range
 
 LEFT_OUT = ("gain_rate", "gain_state")
-"""Metrics that only one control law has."""
+"""Metrics that exist for one control law only, and are not compared."""
 MEANINGS = {
     "transition_time": "duration of the manoeuvre: the optimal time, or the settling time of a control law",
     "first_reached": "time at which the command is first reached",
@@ -31,7 +31,7 @@ MEANINGS = {
     "_driven": "largest deviation from the undriven motion",
     "_share": "effect of the boundary control on the rate of the constraint, relative to its largest value on the arc",
 }
-"""Meanings of metrics, by their names or endings."""
+"""Name of a metric, or its ending -> its meaning."""
 
 
 def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:

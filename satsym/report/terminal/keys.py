@@ -28,7 +28,7 @@ own, such as `"5 km"`. Unknown keys are refused.
 
 REQUIRED = "must be given"
 WIDEST, DEEPEST = 100, 20
-"""Largest number of columns of the terminal that are used, and of names with text beside them."""
+"""Largest number of columns of the terminal that are used, and largest width of names with text beside them."""
 TITLES = ("key", "value", "unit", "default", "meaning", "used by")
 FILE = Path(__file__).parents[3] / "docs" / "instances.md"
 

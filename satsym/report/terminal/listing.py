@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 COLUMNS = 80
-"""Width of a list where there is no terminal to fill."""
+"""Width of a list, in characters, if output is not a terminal."""
 MOST_NAMES = 4
-"""Largest number of a model's names in its line; `satsym models MODEL` has all."""
+"""Largest number of a model's names in its line; `satsym models MODEL` lists all of them."""
 
 
 def models_text(specs: Sequence[ProblemSpec], whole: bool = False) -> str:
@@ -134,7 +134,7 @@ INSTANCES = {
         "lapan-coupling lapan-roll-yaw lapan-roll-yaw-lqr itb-earth itb-earth-kicked itb-earth-escape"
     ),
 }
-"""Names of instances by subject, in the order of the list."""
+"""Subject -> names of its instances, in the order of the list."""
 
 MODELS = {
     "Orbits": (
@@ -156,7 +156,7 @@ MODELS = {
     ),
     "Small systems": "saddle stable_node three_modes explicit_time time_varying singular_regulator van_der_pol",
 }
-"""Names of models by subject."""
+"""Subject -> names of its models."""
 
 
 def by_subject(names: Iterable[str], subjects: Mapping[str, str]) -> dict[str, list[str]]:

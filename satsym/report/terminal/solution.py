@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from satsym.report.results.examination import Examination
 
 ROUNDING = 1e-10
-"""Fraction of the largest value on the way below which a value is shown as zero."""
+"""Fraction of a quantity's largest value below which a value is shown as zero."""
 
 _PARTLY = "final state wholly or partly free"
 _END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final state on the reference", 5: _PARTLY}
-"""Descriptions of the ends, by boundary type."""
+"""Boundary type -> description of the final state."""
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:

@@ -10,7 +10,7 @@ GAP = "  "
 WIDEST, NARROWEST = 100, 40
 """Largest and smallest width of paragraphs, in characters."""
 SENTENCE = 16
-"""Least width of a column of sentences, in characters."""
+"""Smallest width of a column of sentences, in characters."""
 
 
 def room() -> int | None:

@@ -14,7 +14,7 @@ from satsym.wording import shown
 
 _FOLDER = Path(__file__).parent
 PHRASES = "phrases"
-"""The table of translated words of models, which is not one of the texts."""
+"""Name of the table of translated words of models, which is separate from the texts."""
 
 _HOLE = re.compile(r"<([a-z_]+)>")
 
