@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
 
 HEAD, CHAPTERS = source_files.LEDGER, "ledger_*.toml"
-"""Files of a ledger's folder: the main file, and the chapters, which contain only rows and are read in order of name.
-"""
+"""Files of a ledger's folder: the main file, and the chapters, which contain only rows and are read in order of
+name."""
 INDONESIAN = "says.id.toml"
 """File with the Indonesian subjects of the rows; it is optional."""
 

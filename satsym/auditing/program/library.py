@@ -88,8 +88,8 @@ def _refuse_others(value: Any) -> None:
 
 
 MAX_STATES = 100
-"""Number of states of an initial value problem, as implicit methods solve linear equations of this size in each step.
-"""
+"""Number of states of an initial value problem, as implicit methods solve linear equations of this size in each
+step."""
 DRAWING = frozenset("figure plot scatter title xlabel ylabel legend grid axis show savefig".split())
 BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,

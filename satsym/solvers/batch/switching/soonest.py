@@ -33,8 +33,8 @@ TIGHT, PRECISE = 0.1, 1e-3
 """Relative tolerances of the distance of a plane from the set: usual, and for the planes of an arrival."""
 
 BACK = 4
-"""Number of steps backwards in which costates of an arrival are searched, since no plane exists at the arrival itself.
-"""
+"""Number of steps backwards in which costates of an arrival are searched, since no plane exists at the arrival
+itself."""
 
 BEFORE = 1e-3
 """Fraction of a duration before an arrival in which no earlier arrival is excluded."""
