@@ -1,4 +1,4 @@
-"""The audit: each claim (row) that a document makes is compared with what is derived and receives a verdict."""
+"""The audit: each claim of a document receives a verdict by comparison with what is derived."""
 
 from satsym.auditing.judged import VERDICTS, Judged
 from satsym.auditing.ledger.contents import Ledger

@@ -55,7 +55,7 @@ class Finding:
 
     @property
     def overturned(self) -> tuple[Judged, ...]:
-        """Conclusions of the document that are false because of this fault."""
+        """Conclusions of the document that are false because of the fault of the finding."""
         return tuple(row for row in (*self.places, *self.spoiled) if _falls(row))
 
 

@@ -27,10 +27,10 @@ class Outcome:
     artefact: bool = False
     unit: bool = False
     near: bool = False
-    """`sound`: its reason is true. `vacuous`: nothing satisfies its condition. `artefact`: the printed algorithm
-    produces it. `unit`: only its unit is wrong. `near`: only its last digit is wrong."""
+    """Properties of the row: its reason is true (`sound`), nothing satisfies its condition (`vacuous`), the printed
+    algorithm produces it (`artefact`), only its unit (`unit`), or only its last digit (`near`), is wrong."""
     remark: str = ""
-    """Sentence for the diagnosis."""
+    """Sentence that becomes part of the diagnosis of the row."""
     lacks: str = ""
     """Dimension by which a wrong unit has to be multiplied."""
     evidence: Mapping[str, object] = field(default_factory=dict)

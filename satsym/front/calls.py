@@ -43,7 +43,7 @@ VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 """Environment variables that limit libraries of linear algebra to one thread when these are loaded."""
 
 _HELD = RLock()
-"""Lock that is held while libraries are limited to one thread, so that one thread only sets and restores the limit."""
+"""Lock that is set while libraries are limited to one thread, so that one thread only sets and restores the limit."""
 
 
 @contextmanager

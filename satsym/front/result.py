@@ -110,7 +110,7 @@ Found = TypeVar("Found", Solution, Simulation)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(ABC, Generic[Found]):
-    """A trajectory with its instance.
+    """A solved or simulated trajectory with its instance.
 
     ``x`` and ``u`` are functions of time, ``x(t)``, and index like arrays of their values at the nodes, ``x[0, -1]``;
     ``x["r"]`` is the state of that name. Between nodes the equations of motion are integrated from the nodes on both

@@ -53,7 +53,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Return the entries, exits and touch points of path constraints, and interior points, in order of time."""
+        """Return the entries, exits and touch points of path constraints, and waypoints, in order of time."""
         return self.found.events
 
     @property

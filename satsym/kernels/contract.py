@@ -106,8 +106,7 @@ INTERIOR = {
     "interior_gradient": _signature("t x p", "jn"),
     "interior_drift": _signature("t x p", "j"),
 }
-"""Additional functions of a problem with interior point conditions, see
-:mod:`satsym.symbolic.principle.path.interior`."""
+"""Additional functions of a problem with waypoints, see :mod:`satsym.symbolic.principle.path.interior`."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),

@@ -309,7 +309,7 @@ class Rows:
         self.rows: list[dict[int, Ball]] = []
         self.first = shooting.first
         self.lengths = len(self.first) + self.m * (len(box.nodes) - 1) - shooting.lengths_given
-        """The first place of a length, were all of them unknown."""
+        """Column of the first length of an arc in the equations, counted as if all lengths were unknown."""
         for i in shooting.statement.free:  # costates of states that are free at the start vanish there
             self._add(box.nodes[0][self.n + i], {self._place(0, self.n + i): arb(1)})
 

@@ -223,7 +223,7 @@ class MotionPoint(Point):
         self._asked: set[str] = set()
 
     def symbol(self, name: str) -> int:
-        """Return the value of a name at this point."""
+        """Return the value of a name at the random point, modulo a prime."""
         if name not in self._known or name in self._asked:
             return super().symbol(name)
         self._asked.add(name)

@@ -26,7 +26,7 @@ class AtOneTime:
         return _CONDITIONS in target.address or (self.last and target.equation.lhs == Sym("S"))
 
     def holds_at_this_end(self, target: Target | None, states: tuple[str, ...]) -> bool:
-        """Return whether an equation of the derivation holds at this time.
+        """Return whether an equation of the derivation holds at the initial or final time of the printed equation.
 
         The boundary conditions of the states hold at the initial time, all other boundary conditions at the final time.
         """

@@ -115,7 +115,7 @@ def _correct(bench: Bench, row: Row, compared: Plan, fix: Remedy | None) -> Node
 
 
 def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> tuple[Bench, Row]:
-    """Return a ledger that consists of this statement only, and its row."""
+    """Return a ledger whose only row is the statement, with the tools to judge it, and the row."""
     derived = subject.derived
     assert fit.target is not None
     known = subject.meant(named, derivatives, fit.guess)

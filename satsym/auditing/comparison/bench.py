@@ -33,7 +33,7 @@ class Refused(BadInput):
 
 @dataclass(frozen=True)
 class Both:
-    """One value as computed by both engines."""
+    """One value as computed by both engines, as a tree in a prime field and by SymPy."""
 
     trees: Value
     exact: Value
@@ -213,7 +213,7 @@ class Bench:
             return None
 
     def engines(self, row: Row) -> tuple[Calculus, Sympy]:
-        """Return both engines for formulas in the names of the models."""
+        """Return both engines that evaluate formulas in the names of the models: trees in a prime field, and SymPy."""
         return self._engine(row, Calculus), self._engine(row, Sympy)
 
     def unused(self) -> str:
@@ -226,7 +226,7 @@ class Bench:
         return Both(trees, exact)
 
     def _engine(self, row: Row, kind: type, theirs: bool = False, replacements: Replacements | None = None) -> Any:
-        """Return an engine for formulas in the names of the models, or with `theirs` in the document's symbols."""
+        """Return an engine for evaluating formulas in the models' names, or with `theirs` in the document's symbols."""
 
         def name(text: str) -> Any:
             return (self._theirs if theirs else self._ours)(row, text, kind)

@@ -49,7 +49,7 @@ class BoundPoint(Point):
         return super().value_of_call(node)
 
     def symbol(self, name: str) -> int:
-        """Return the value of what a symbol of the document means."""
+        """Return the value at the point of what a symbol of the document means."""
         if name in self._meanings:
             return self.base.value(self._meanings[name])
         if name in ("I", "pi"):

@@ -86,7 +86,7 @@ class Pages:
         return Evaluation(words, lookups, _listed(self._row.table.printed))
 
     def row(self, key: str) -> Any:
-        """Return the printed formula of a row in the names of the models, for an equation its right-hand side."""
+        """Return the printed formula of a row in the names of the models; of an equation, the right-hand side."""
         refuse_unknown("there is no row", key, self._bench.rows)
         other = self._bench.rows[key]
         if other.printed is None:

@@ -55,7 +55,7 @@ def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
 
 
 def in_rows(lines: Iterable[tuple[Node, ...]]) -> str:
-    """Return a matrix as text."""
+    """Return the rows of a matrix as text."""
     return written(Grid(tuple(map(Grid, lines))))
 
 

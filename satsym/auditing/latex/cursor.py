@@ -23,7 +23,7 @@ class Reading:
 
     statements: list[Node | Equality]
     letters: dict[str, Letter] = field(default_factory=dict)
-    """Name -> the printed letter."""
+    """Name in the trees -> the printed letter."""
     places: dict[str, set[str]] = field(default_factory=dict)
     """Name -> the arguments with which the letter is printed, apart from time."""
     known: dict[str, set[str]] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class Cursor(ABC):
 
     @abstractmethod
     def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
-        """Read values with their conditions."""
+        """Read the values of a case distinction with their conditions."""
 
     @abstractmethod
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:

@@ -31,7 +31,7 @@ _SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":"
 
 
 class LetterCursor(Cursor):
-    """Parser of letters."""
+    """Parser of single letters with their decorations, such as indices and accents."""
 
     def _letter(self) -> Letter | None:
         """Read a letter with its decorations; ``None``, with nothing read, if no letter is next."""
@@ -211,7 +211,7 @@ class LetterCursor(Cursor):
         return ""
 
     def _said(self, script: Sequence[Token]) -> str:
-        """Return an index as text."""
+        """Return the tokens of an index as text, e.g. for use in a name."""
         said: list[str] = []
         i = 0
         while i < len(script):

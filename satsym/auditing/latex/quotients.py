@@ -12,7 +12,7 @@ from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 
 
 class QuotientCursor(LetterCursor):
-    """Parser of derivatives."""
+    """Parser of derivatives in printed formulas."""
 
     def _derivative(self, token: Token) -> Node | None:
         """Read a derivative that is printed as a quotient.

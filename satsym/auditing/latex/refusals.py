@@ -123,7 +123,7 @@ class RefusalCursor(OperatorCursor):
             raise Unread("a differential is not supported", above[0].at)
 
     def _refuse_units(self, above: Sequence[Token], below: Sequence[Token]) -> None:
-        """Refuse a quotient of units."""
+        """Refuse a quotient whose numerator and denominator are units, such as m/s."""
         said = ["".join(t.text for t in part[1:]).strip("{}") for part in (above, below)]
         set_upright = all(part and part[0].text in words.UPRIGHT for part in (above, below))
         if set_upright and all(one.partition("}")[0] in words.UNITS for one in said):

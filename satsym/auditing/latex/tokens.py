@@ -30,7 +30,7 @@ class Unread(BadInput):
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A token of a formula.
+    """A token of a LaTeX formula.
 
     ``kind`` is ``letter``, ``number``, ``macro``, ``sign`` (any other character), ``open``, ``close``, ``begin`` or
     ``end`` (of an environment); ``at`` is the position of its first character.
@@ -173,7 +173,7 @@ def group_end(found: Sequence[Token], i: int) -> int:
 
 
 def in_tex(part: Sequence[Token]) -> str:
-    """Return tokens as LaTeX."""
+    """Return the LaTeX text of tokens."""
     said, after_macro = "", False
     for token in part:
         text = f"\\{token.text}" if token.kind == "macro" else token.text
@@ -197,7 +197,7 @@ def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token]
 
 
 def _optional(found: Sequence[Token], i: int, default: Sequence[Token]) -> tuple[Sequence[Token], int]:
-    """Return the optional argument in square brackets at a position, or its default, and the position after it."""
+    """Return the optional argument of a macro at a position, or its default, and the position after it."""
     depth = 0
     for k in range(i, len(found)) if i < len(found) and found[i].text == "[" else ():
         opens, closes = found[k].text == "[", found[k].text == "]"

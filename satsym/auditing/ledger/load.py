@@ -32,7 +32,7 @@ TABLES = ("format", "document", "scope", "symbols", "inputs", "derived", "row")
 
 
 def read(path: Path) -> Ledger:
-    """Read a ledger.
+    """Read and check a ledger, the file that lists the claims of a document.
 
     Raises
     ------
@@ -91,7 +91,7 @@ class _Reader:
             )
 
     def ledger(self, name: str) -> Ledger:
-        """Return the checked ledger."""
+        """Return the ledger after all its tables are read and checked."""
         self._refuse_unknown_tables()
         document = self._document()
         with self._telling("document", "model"):

@@ -23,7 +23,7 @@ class Part:
 
     path: Path
     tree: dict[str, Any]
-    """Contents of the file."""
+    """Contents of the file as tables."""
     first: int
     """Number of rows in the files before this one."""
 

@@ -37,7 +37,7 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class DocumentTable(Table, frozen=True):
-    """Table of the document.
+    """Table of a ledger that describes the document.
 
     ``numbers`` lists the numbers of its equations etc.; ``model`` is the model whose names and units need no prefix.
     """

@@ -81,7 +81,7 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
 
 @kept
 def distance_after(orbit: Record, share: float) -> Quantity:
-    """Return the distance from the Earth's centre after a fraction of a revolution from the perigee."""
+    """Return the distance from the Earth's centre after a fraction of a revolution from the periapsis."""
     place = _places(orbit, np.array([share * orbit.part("period").value]))
     return Quantity(float(np.linalg.norm(place)), orbit.part("axis").dimension)
 
@@ -102,7 +102,7 @@ def _orbit(period: float, eccentricity: float = 0.0, inclination: float = 0.0, p
 
 
 def _places(orbit: Record, times: Array) -> Array:
-    """Return positions at times after the perigee, with the x axis towards the perigee, shape (3, times)."""
+    """Return positions at times after the periapsis, with the x axis towards the periapsis, shape (3, times)."""
     e, axis, mu = orbit.part("eccentricity"), orbit.part("axis").value, constant("mu_earth").value
     speed = math.sqrt(mu / axis * (1.0 + e) / (1.0 - e))
     return propagate([[axis * (1.0 - e)], [0.0], [0.0]], [[0.0], [speed], [0.0]], mu, times)[0]

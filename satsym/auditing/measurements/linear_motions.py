@@ -110,7 +110,7 @@ def least_energy(of: Any, start: Any, t: float) -> float:
 
 
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
-    """Return the state at time 1 under the input of least energy that comes as close to a target as possible."""
+    """Return the state at time 1 under the input of minimum energy that comes as close to a target as possible."""
     a, b = (numbers(linear.system(of).part(name)) for name in "AB")
     moved, pushed, effort = _steering(a, b)
     return np.asarray(moved @ numeric(start) + pushed @ (effort @ (numeric(aim) - moved @ numeric(start))))
@@ -146,10 +146,7 @@ def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> A
 
 @kept
 def _steering(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """Return the transition matrix to time 1, the matrix M, and its pseudo-inverse.
-
-    The inputs B' e^(-A's) d displace the state at time 1 by M d.
-    """
+    """Return the transition matrix to time 1, the displacement by the inputs B' e^(-A's) d as M d, and M^+."""
     n = len(a)
 
     def rates(s: float, x: Array) -> Array:

@@ -25,7 +25,7 @@ def inverse(of: Any) -> Any:
 
 
 def transpose(of: Any) -> Any:
-    """Return the transpose."""
+    """Return the transpose of a matrix."""
     return of.T
 
 

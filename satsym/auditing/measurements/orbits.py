@@ -75,7 +75,7 @@ def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | Non
 
 
 def rates_at(of: Any, x: ArrayLike, controls: Sequence[float] = (), **parameters: float) -> Array:
-    """Return the time derivatives of a model, by default without control, or of a member of a family, at a state."""
+    """Return the time derivatives of a model, by default uncontrolled, or of a member of a family, at a state."""
     if isinstance(of, Record):
         if "formulas" not in of.parts:
             return numbers(of.part("A")) @ np.asarray(x, dtype=float)

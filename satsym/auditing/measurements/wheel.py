@@ -1,4 +1,4 @@
-"""Manoeuvres of a pitch axis with a reaction wheel: by the classical law, by switching, and with the least heat.
+"""Manoeuvres of a pitch axis with a reaction wheel: by the classical law, by switching, and with minimum heat.
 
 An instance with a ``[classical]`` table provides the numbers, and motions are simulated with the generated equations. A
 motion has times ``t``, ``angle``, ``rate``, ``speed`` of the wheel (deviation from the nominal speed), ``torque``, the
@@ -70,7 +70,7 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
 
 
 def gentle(instance: str, duration: float) -> Record:
-    """Return the motion of least heat from rest to rest in a given time, by the derived law."""
+    """Return the motion of minimum heat from rest to rest in a given time, by the derived law."""
     from satsym.symbolic.lookup import library
 
     n = _numbers(instance)

@@ -22,11 +22,14 @@ from satsym.status import BadInput
 from satsym.wording import shown
 
 MAX_SIZE = 100_000
-"""Number of entries of an array or list, or characters of a text; the shipped programs have arrays of up to 3000."""
+"""Largest number of entries of an array or list, or of characters of a text.
+
+The shipped programs have arrays of up to 3000 entries.
+"""
 
 
 def made(count: int) -> None:
-    """Count the entries of a value that is about to be created.
+    """Count the entries of a value that is about to be created by a printed program.
 
     Raises
     ------
@@ -39,12 +42,12 @@ def made(count: int) -> None:
 
 
 def broadcast(one: Any, other: Any) -> None:
-    """Count the entries of the result of an operation between two arrays, or an array and a number."""
+    """Count the entries of the result of an operation on arrays or numbers, as a limit on the work of a program."""
     made(math.prod(np.broadcast_shapes(np.shape(one), np.shape(other))))
 
 
 def indexed(owner: Any, place: Any) -> None:
-    """Count the entries that lists of indices select from an array; slices are views and count nothing."""
+    """Count the entries that lists of indices select from an array of a program; slices count nothing."""
     parts = place if isinstance(place, tuple) else (place,)
     picked = math.prod(max(1, extent(part)) for part in parts if isinstance(part, list | np.ndarray))
     if picked > 1:
@@ -88,8 +91,10 @@ def _refuse_others(value: Any) -> None:
 
 
 MAX_STATES = 100
-"""Number of states of an initial value problem, as implicit methods solve linear equations of this size in each
-step."""
+"""Largest number of states of an initial value problem.
+
+Implicit methods solve linear equations of that size in each step.
+"""
 DRAWING = frozenset("figure plot scatter title xlabel ylabel legend grid axis show savefig".split())
 BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,

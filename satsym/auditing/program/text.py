@@ -27,12 +27,12 @@ class Program:
     """A printed program with its parsed statements."""
 
     text: str
-    """Lines of the program, joined."""
+    """Printed lines of the program, joined by line breaks."""
     statements: tuple[ast.stmt, ...]
-    """Statements in order."""
+    """Parsed statements of the program, in order."""
 
     def line(self, node: ast.AST) -> str:
-        """Return the printed line on which a node begins."""
+        """Return the printed line on which a node of the syntax tree begins."""
         return self.text.splitlines()[getattr(node, "lineno", 1) - 1].strip()
 
 

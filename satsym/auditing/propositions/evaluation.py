@@ -52,7 +52,7 @@ class Answer:
     """Whether a proposition is true, and the relations that decide it."""
 
     truth: Truth
-    """True, false or undecided."""
+    """Truth value of the proposition: true, false or undecided."""
     reasons: tuple[str, ...] = ()
     """The relations that decide the answer, with computed values."""
     evidence: Mapping[str, str] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class Evaluation:
             return self._judge(proposition.tree, {})
 
     def term(self, proposition: Proposition) -> str:
-        """Return the value of a term in words."""
+        """Return the value of a term as text; "undecided" with the reason if it cannot be computed."""
         with np.errstate(all="ignore"):
             try:
                 return in_words(self._value(proposition.tree, {}))

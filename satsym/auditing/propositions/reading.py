@@ -51,11 +51,11 @@ class Words:
     """Names that a proposition may use."""
 
     functions: Mapping[str, Callable[..., Any]]
-    """Measurements by name."""
+    """Measurements (functions that compute quantities) by name."""
     values: Mapping[str, Callable[[], Any]]
     """Families, conventions and constants by name; each is created on demand."""
     symbols: Collection[str] = ()
-    """Symbols of the notation."""
+    """Symbols of the notation that a proposition may use."""
 
 
 @dataclass(frozen=True)

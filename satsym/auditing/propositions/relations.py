@@ -37,10 +37,10 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class Comparison:
-    """Result of comparing two values."""
+    """Result of a relation between two values, such as equality."""
 
     holds: bool
-    """Whether the relation holds."""
+    """Whether the relation between the values holds."""
     fit: Fit | None = None
     """Position of the value relative to the printed number; ``None`` if no number is printed."""
 

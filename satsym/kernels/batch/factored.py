@@ -35,7 +35,7 @@ class Factored:
     factor: float = 1.0
     power: int = 0
     fixed: int | None = None
-    """Constant value that is a postponed factor in addition to the number and power; ``None`` if there is none."""
+    """Constant value that is also postponed as a factor, besides the number and power; ``None`` if there is none."""
 
     def times(self, factor: float, power: int = 0) -> Factored:
         """Return the value with one more factor and power of the unit."""

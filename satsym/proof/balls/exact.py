@@ -70,7 +70,7 @@ class Source:
             except (tomllib.TOMLDecodeError, ValueError, BadInput):
                 self._tree = {}
         self.stated: dict[str, str] = {}
-        """What was read, by name: the decimal, the quantity, or the binary fraction."""
+        """Name -> the value as it was read: a decimal, a quantity or a binary fraction."""
 
     def number(self, value: float, unit: str, *key: str | int) -> Ball:
         """Return the exact number of an instance that its file states under these keys.

@@ -31,9 +31,9 @@ ROW_PLAIN, ROW_SMALL_FRACTIONS, ROW_ONE_FRACTION, ROW_FRACTIONS = (
 The denominator in one row must not seem to belong to the next row.
 """
 TALL = 4
-"""Largest number of lines of an equation that is kept on one page."""
+"""Number of lines up to which an equation is kept on one page."""
 TOGETHER = 3
-"""Largest number of lines of a group of equations that is kept on one page."""
+"""Number of lines up to which a group of equations is kept on one page."""
 FEWEST = 2
 """Smallest number of lines of a group of equations on a page."""
 

@@ -26,7 +26,7 @@ from satsym.report.said import decimal, say
 from satsym.solution import Solution
 
 Data: TypeAlias = dict[str, Any]
-"""An object that is written as JSON."""
+"""Object with names and values that is written as JSON."""
 NODES, FEWER = 1200, 200
 """Largest number of nodes that are kept of a single solution, and of each of several solutions."""
 DIGITS = 6

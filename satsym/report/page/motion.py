@@ -42,7 +42,7 @@ EDGES = [
 GRID = 81
 """Number of points along each side of the grid on which forbidden regions are computed."""
 MARKED = {"target": "9", "passed": "5"}
-"""Radii of the marks of the final condition, and of interior points."""
+"""Radii of the marks of the final condition, and of waypoints."""
 
 Placing: TypeAlias = Callable[[Array], Array]
 """A function from points of a plane to points of the picture, shapes (2, N)."""

@@ -41,7 +41,7 @@ class Plane:
     switching: Field | None = None
     """Function that vanishes on the known switching curve of a minimum-time problem, otherwise ``None``."""
     passed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
-    """Interior points as displayed."""
+    """Waypoints as displayed."""
 
     @property
     def target(self) -> tuple[float, float] | None:

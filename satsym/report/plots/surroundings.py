@@ -58,7 +58,7 @@ class Surroundings:
 
     forbidden: tuple[Forbidden, ...] = ()
     passed: Array | None = None
-    """Positions of the interior points."""
+    """Positions of the waypoints."""
     other: Array | None = None
     """The uncontrolled motion that the final state has to join, over one revolution."""
     other_start: Array | None = None

@@ -120,7 +120,7 @@ _MEANINGS = {
     Verdict.EXTREMAL_ONLY: "first-order conditions hold; not proved to be a strict local minimum",
     Verdict.FAILED: "an optimality condition is violated",
 }
-"""Verdict -> its meaning, in the words that solve, study and compare share."""
+"""Verdict -> its meaning, in the words that solve, study and compare have in common."""
 
 
 def meaning(verdict: Verdict) -> str:

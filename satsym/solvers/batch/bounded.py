@@ -27,9 +27,9 @@ AIMS = (1e-3, 1e-6, 1e-9)
 """Tolerances that are used in turn while the times at which bounds are entered or left are still inaccurate."""
 
 SETTLED_TIMES = 1e-7
-"""Largest change of these times in the last iteration, as a fraction of the duration.
+"""Largest final change of times at which bounds are entered or left, as a fraction of the duration.
 
-The effect on the motion is proportional to the square of the change. A larger change makes the solution inaccurate.
+The effect on the motion is proportional to the square of the change. Solutions with a larger change are rejected.
 """
 
 LOOKED_AT = (np.arange(8) + 0.5) / 8.0
@@ -39,7 +39,7 @@ MOST_TIMES = 24
 """Largest number of times at which an instance may enter or leave a bound."""
 
 POLISHED = 3
-"""Number of Newton corrections of such a time along the motion."""
+"""Number of Newton corrections of a time at which a bound is entered or left."""
 
 DIFFERENCE = 1e-6
 """Step of finite differences in time, as a fraction of the duration."""
@@ -52,13 +52,13 @@ class Met:
     times: Array
     """Times of each instance in increasing order, followed by infinity, shape (J, M)."""
     z: Array
-    """States and costates at these times, shape (2n, J, M)."""
+    """States and costates at the times when bounds are entered or left, shape (2n, J, M)."""
     clear: NDArray[np.bool_]
-    """Whether further such times are clearly excluded, shape (M,)."""
+    """Whether the list of times is clearly complete, shape (M,), for each instance."""
 
     @property
     def counts(self) -> NDArray[np.intp]:
-        """Number of such times for each instance, shape (M,)."""
+        """Number of times at which bounds are entered or left for each instance, shape (M,)."""
         return np.asarray(np.isfinite(self.times).sum(axis=0))
 
 

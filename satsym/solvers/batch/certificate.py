@@ -137,7 +137,7 @@ def _flow(many: Many, start: Array, scale: Array, parts: int) -> tuple[Array, Ar
 
 
 def _undriven(many: Many, sizes: Sizes) -> Array:
-    """Return approximate final states of the motions without control, shape (n, M)."""
+    """Return approximate final states of the uncontrolled motions, shape (n, M)."""
     model, p = many.instance.model, tuple(many.parameters)
     none, now = np.zeros((len(model.spec.controls), many.count)), many.initial
     times = np.concatenate([many.times[:-1:2], many.times[-1:]])  # only its size matters

@@ -41,7 +41,7 @@ def condensing(states: int, compiled: bool) -> Condensing:
 
 
 class _OnArrays:
-    """Condensing by NumPy."""
+    """Condensing (elimination of inner nodes) by NumPy."""
 
     def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
         found = np.empty((*start.shape[:2], transition.shape[2] + 1, start.shape[2]))
@@ -61,7 +61,7 @@ class _OnArrays:
 
 
 class _Compiled:
-    """Condensing by compiled code."""
+    """Condensing (elimination of inner nodes) by compiled code."""
 
     def __init__(self, rows: int) -> None:
         name = f"condensing_{rows}"

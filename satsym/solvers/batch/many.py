@@ -43,9 +43,9 @@ class Many:
     lower: Array
     upper: Array
     radius: Array
-    """Bounds on controls, shapes (m, M), and on their norm, shape (M,), within which solutions must be."""
+    """Bounds on controls, shapes (m, M), and on their norm, shape (M,), for judging solutions."""
     bounded: bool = False
-    """Whether controls are limited by these bounds; otherwise the problems are solved as if there were none."""
+    """Whether controls are limited by their bounds; otherwise the problems are solved as if there were none."""
 
     @classmethod
     def of(cls, instance: Instance, instances: Sequence[Instance], compiled: bool) -> Many:
@@ -118,7 +118,7 @@ class Many:
 
     @property
     def limits(self) -> Array:
-        """Bounds in the form of generated functions, shape (b, M)."""
+        """Bounds on controls as rows in the order that generated functions expect, shape (b, M)."""
         if self.problem.control_set.kind == "ball":
             return self.radius[None]
         return np.concatenate([self.lower, self.upper])

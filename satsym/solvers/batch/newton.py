@@ -1,7 +1,7 @@
 """Newton's method for the nodes of many shooting problems; each problem is removed when it has converged or failed.
 
 Steps of low order with exact derivatives are used first. Steps of high order follow, with the last of these derivatives
-held fixed; their error is estimated by Richardson's rule from twice as many steps.
+kept fixed; their error is estimated by Richardson's rule from twice as many steps.
 """
 
 from __future__ import annotations

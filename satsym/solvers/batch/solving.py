@@ -25,7 +25,7 @@ ROUNDED = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """Results of many problems."""
+    """Results of many problems that were solved together."""
 
     nodes: Nodes
     neighbour: NDArray[np.bool_]

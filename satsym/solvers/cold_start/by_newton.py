@@ -55,7 +55,7 @@ def by_newton(problem: TwoPoint, z: Array) -> Attempt | None:
 
 
 def _settled(problem: TwoPoint, z: Array, limits: Limits) -> Attempt | None:
-    """Return the extremal with nodes where bounds are met; ``None`` if these times do not settle."""
+    """Return the extremal with nodes at the times when bounds are met; ``None`` if it is not found."""
     tau = np.linspace(0.0, 1.0, z.shape[1])
     curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
     found = tried(lambda: settled(problem, curve, STAGES, max(len(curve.mesh) - 1, MESHES[0]), limits))

@@ -23,7 +23,7 @@ class Start:
     """An extremal of low order from which a method starts."""
 
     found: Attempt
-    """The minimum of least cost, or otherwise the last attempt with the reason why it failed."""
+    """The minimum of lowest cost, or otherwise the last attempt with the reason why it failed."""
     origin: Origin
     """The initial guess from which the extremal was found."""
     steps: int

@@ -20,8 +20,8 @@ def own_time(instance: Instance) -> float | None:
     """Return an estimate of the time in which the slowest state can reach its final value; ``None`` if unknown.
 
     A state has to change by ``d``, from its initial to its given final value. At the initial time it has the rate ``v``
-    and the second derivative ``a``, without controls and at each of their finite bounds. Its time is the smallest of
-    all values ``|d/v|`` and ``sqrt|d/a|``.
+    and the second derivative ``a``, uncontrolled and with each control at each of its finite bounds. Its time is the
+    smallest of all values ``|d/v|`` and ``sqrt|d/a|``.
     """
     names, start = instance.model.spec.state_names, np.array(instance.initial)
     goal = [instance.final.get(name) for name in names]
@@ -42,7 +42,7 @@ def own_time(instance: Instance) -> float | None:
 
 
 def time_scale(instance: Instance) -> float:
-    """Return the time scale of the fastest mode, 1/|eigenvalue| of f_x at the initial time without control.
+    """Return the time scale of the fastest mode, 1/|eigenvalue| of f_x at the initial state with zero controls.
 
     If all eigenvalues are zero, the result is :func:`own_time`, or one if that is unknown.
     """

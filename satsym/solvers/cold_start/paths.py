@@ -1,4 +1,4 @@
-"""Initial guesses of the states: straight lines, and motions without control or under a guessed control."""
+"""Initial guesses of the states: straight lines, uncontrolled motions, and motions under a guessed control."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ POINTS = 41
 """Number of points of a guess from which the mesh is computed."""
 
 STEPS = 4000
-"""Number of RK4 steps of a motion under a guessed control, and largest number for a motion without control."""
+"""Number of RK4 steps of a motion under a guessed control, and largest number for an uncontrolled motion."""
 
 FEWEST, QUICK = 400, 20.0
-"""Smallest number of RK4 steps of a motion without control, and number per radian of its fastest mode."""
+"""Smallest number of RK4 steps of an uncontrolled motion, and number per radian of its fastest mode."""
 
 
 def first(problem: TwoPoint) -> States:
-    """Return the initial guess of the states: as given, or a straight line, or the motion without control.
+    """Return the initial guess of the states: as given, or a straight line, or the uncontrolled motion.
 
-    The straight line leads to the given final state; without one, the motion without control is used.
+    The straight line leads to the given final state; without one, the uncontrolled motion is used.
     """
     coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
     path = _under_guess(problem) or coasting or _line(problem)
@@ -119,7 +119,7 @@ def _under_guess(problem: TwoPoint) -> States | None:
 
 
 def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
-    """Return the motion without control through a scaled state; ``None`` if it leaves the domain."""
+    """Return the uncontrolled motion through a scaled state; ``None`` if it leaves the domain."""
     instance, start = problem.instance, tuple((state * problem.scale.state).tolist())
     steps = _steps(problem, start, backwards)
     grid = Grid.uniform(0.0, 1.0, steps)
@@ -132,7 +132,7 @@ def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None
 
 
 def _steps(problem: TwoPoint, start: tuple[float, ...], backwards: bool) -> int:
-    """Return the number of RK4 steps that resolve the fastest mode of a motion without control."""
+    """Return the number of RK4 steps that resolve the fastest mode of an uncontrolled motion."""
     instance, n = problem.instance, problem.states
     none = (0.0,) * len(instance.model.spec.controls)
     begin = instance.t0 + problem.duration if backwards else instance.t0

@@ -97,7 +97,7 @@ class ByShooting:
         return extremal(found.problem, found.path, limits)
 
     def _shot(self, problem: TwoPoint, start: Arcs) -> Shot | None:
-        """Return the result of Newton's method on the arcs of a neighbouring problem; ``None`` if it fails."""
+        """Return the result of Newton's method from the arcs of a neighbouring problem; ``None`` if it fails."""
         tolerance = min(ACCURACY, problem.instance.solver.tolerance)
         arcs, error, iterations = _quick_newton(replace(start, problem=problem, steps=self._steps), tolerance)
         sound = error <= tolerance and (arcs.nodes[list(problem.positive)] > 0.0).all()

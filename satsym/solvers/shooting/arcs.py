@@ -22,7 +22,7 @@ In a return from a nearby initial state, costates are so small that rounding of 
 """
 
 ASYMPTOTIC = 1e-3
-"""Error below which it decreases with the number of steps according to the order of the method."""
+"""Error of an arc below which the error decreases with the number of steps according to the order of the method."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Arcs:
     nodes: Array
     """Values at the nodes, shape (2n, N+1)."""
     theta: Array
-    """Extra unknowns, shape (e,)."""
+    """Extra unknowns, such as a free duration, shape (e,)."""
     steps: int = 1
     """Number S of integration steps in each arc."""
 

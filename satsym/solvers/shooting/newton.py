@@ -39,11 +39,11 @@ class Outcome:
     """Result of Newton's method."""
 
     arcs: Arcs
-    """The last arcs."""
+    """The arcs after the last correction."""
     matching: Matching | None
     """The last linear system; ``None`` if the method failed."""
     iterations: int
-    """Number of corrections."""
+    """Number of Newton corrections."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +118,7 @@ def _correction(matching: Matching, wrong: Residual) -> Correction:
 
 
 def _shortened(arcs: Arcs, correction: Correction, matching: Matching, size: float) -> Arcs | None:
-    """Return the arcs after the longest part of a correction that passes the test; ``None`` if none does.
+    """Return the arcs after the longest part of a correction that passes the monotonicity test; ``None`` if none does.
 
     The part is halved until it passes.
     """

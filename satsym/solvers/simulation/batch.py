@@ -54,7 +54,7 @@ def simulate(
         Constant controls, shape (m,) or (m, N); zero by default.
     method
         One of :data:`METHODS`. ``"symplectic"`` is a composition of kicks and drifts of sixth order with twelve
-        evaluations in a step, for separable models without control.
+        evaluations in a step, for separable uncontrolled models.
 
     Returns
     -------

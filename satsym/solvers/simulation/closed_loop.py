@@ -148,7 +148,7 @@ def _rates(
 
 
 def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:
-    """Return the reference magnitudes of the states, their largest magnitudes without control."""
+    """Return the reference magnitudes of the states, their largest magnitudes in the uncontrolled motion."""
     steps = stable_steps(instance, len(nodes) - 1, MOST_FOR_SIZES)
     nodes = np.linspace(nodes[0], nodes[-1], steps + 1) if steps >= len(nodes) else nodes
     rest = np.zeros((len(instance.model.spec.controls), len(nodes)))

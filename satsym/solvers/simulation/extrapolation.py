@@ -1,8 +1,8 @@
 """Integration to rounding accuracy by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
 
-It is used to check solutions independently of the solvers and shares nothing with collocation. Order and step size are
-adaptive, and only the right-hand side is evaluated (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
-II.9). The integrators of SciPy take longer to import than a solution takes to check.
+It is used to check solutions independently of the solvers and has no code in common with collocation. Order and step
+size are adaptive, and only the right-hand side is evaluated (Hairer, Norsett, Wanner, Solving Ordinary Differential
+Equations I, II.9). The integrators of SciPy take longer to import than a solution takes to check.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ class Trajectory:
     times: Array
     """Times from start to end, shape (K,)."""
     values: Array
-    """Values at these times, shape (K, d)."""
+    """Values at the ends of the steps, shape (K, d)."""
     columns: int = len(SUBSTEPS)
     """Largest number of columns of the extrapolation table that a step needed."""
 
     @property
     def end(self) -> Array:
-        """The last value, shape (d,)."""
+        """Value at the end of the last step, shape (d,)."""
         return np.asarray(self.values[-1])
 
 

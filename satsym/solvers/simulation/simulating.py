@@ -26,7 +26,7 @@ MARGIN = 0.1
 TIGHTER, SMALLEST_TOLERANCE = 0.01, 3e-14
 """Factor of the tolerance from one run under a control law to the next, and the smallest tolerance above rounding."""
 GAINED = 10.0
-"""Factor by which such a run is at least better than the one before.
+"""Factor by which the error of a run under a control law is at least smaller than that of the run before.
 
 The factor is nearly that of the tolerances if the law has no corners.
 """
@@ -42,7 +42,7 @@ MOST_STEPS = 2**20
 """Largest number of steps, unless the instance itself requests more than half as many."""
 
 HOPELESS = 64
-"""Multiple of the given number of steps at which a motion outside the domain is abandoned.
+"""Multiple of the given number of steps at which a motion that leaves the domain is abandoned.
 
 Before, the motion may have left the domain only because steps were too long.
 """
@@ -130,7 +130,7 @@ def _propagated(instance: Instance, law: Law | None, times: Array) -> tuple[Arra
 
 
 def _idle(instance: Instance) -> Law:
-    """Return the control law without control."""
+    """Return the control law whose controls are all zero."""
     rest = [0.0] * len(instance.model.spec.controls)
     return Law("none", lambda t, x: rest)
 
@@ -199,7 +199,7 @@ def _rounding(instance: Instance, x: Array, steps: int, limits: Limits) -> Array
 
 
 def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float:
-    """Return the difference of two runs, relative to the magnitude of each state or a least magnitude."""
+    """Return the difference of two runs, relative to the magnitude of each state or to `least`, if larger."""
     with np.errstate(invalid="ignore"):
         size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.maximum(least, np.finfo(float).tiny))
         return float((np.abs(coarse - fine) / size).max())

@@ -12,7 +12,7 @@ STABLE = 2.0
 
 
 def fastest(instance: Instance) -> float:
-    """Return the magnitude of the fastest eigenvalue that does not grow, at the initial state without control."""
+    """Return the magnitude of the fastest eigenvalue that does not grow, at the initial state with zero controls."""
     model, n = instance.model, len(instance.initial)
     try:
         entries = model.jacobian_x(
@@ -44,7 +44,7 @@ def propagated(instance: Instance, nodes: Array, gain: Array | None) -> tuple[Ar
     nodes
         Equidistant nodes, shape (N+1,).
     gain
-        Gain of the law u = -K x, shape (m, n); by default there is no control.
+        Gain of the law u = -K x, shape (m, n); by default the motion is uncontrolled.
 
     Returns
     -------

@@ -50,14 +50,14 @@ SURE = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """State of the descent."""
+    """State of the quasi-Newton descent."""
 
     sweep: Sweep
     """The current control with its motion, costates and gradient."""
     pairs: tuple[tuple[Array, Array], ...] = ()
     """Recent pairs of step and change of gradient in the scaled control, the newest last."""
     stalled: bool = False
-    """Whether no acceptable step was found from this control."""
+    """Whether no acceptable step was found from the current control."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +208,7 @@ class Tangent:
     """
 
     moves: NDArray[np.bool_]
-    """Whether a control may move in the free directions; otherwise it is held by a bound. Shape (m, M)."""
+    """Whether a control may move in the free directions; otherwise it is saturated. Shape (m, M)."""
     normal: Array | None = None
     """Unit normals of the sphere, zero for controls not on it, shape (m, M); ``None`` without a ball."""
     curvature: Array | float = 1.0
@@ -219,7 +219,7 @@ class Tangent:
         return field if self.normal is None else field - self.normal * (self.normal * field).sum(axis=0)
 
     def free(self, field: Array) -> Array:
-        """Return a field without its normal components, and zero for controls held by bounds, shape (m, M)."""
+        """Return a field without its normal components, and zero for saturated controls, shape (m, M)."""
         return np.where(self.moves, self.along(field), 0.0)
 
 

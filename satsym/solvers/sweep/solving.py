@@ -231,7 +231,7 @@ def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Sol
 
 @dataclass(frozen=True, eq=False)
 class _Relaxed:
-    """State of the relaxation."""
+    """State of the relaxation of a forward-backward sweep."""
 
     sweep: Sweep
     """The last completed sweep."""

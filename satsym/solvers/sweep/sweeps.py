@@ -63,7 +63,7 @@ class Sweep:
     """A motion with its costates, the control law and the gradient."""
 
     forward: Forward
-    """The motion."""
+    """Control and motion of the forward sweep."""
     lam: Array
     """Costates on the fine grid."""
     law: Array

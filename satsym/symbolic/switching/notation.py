@@ -13,7 +13,7 @@ from satsym.symbolic.model import Model, Problem, symbols_of
 from satsym.symbolic.notation import named
 
 UNSWITCHED = sp.Symbol("H_0", real=True)
-"""The part of H without controls."""
+"""The part of H that does not contain the controls."""
 
 SMOOTHING = sp.Symbol("smoothing", positive=True)
 """The weight of u^2 / 2 in the regularised problem."""

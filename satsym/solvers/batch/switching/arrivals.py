@@ -25,7 +25,7 @@ EQUAL_COEFFICIENTS = 1e-12
 """Relative difference of coefficients below which they are equal up to rounding."""
 
 FOLLOWED = 1e-7
-"""Relative difference below which the reference, by finite differences, is a motion without control."""
+"""Relative difference below which the reference, by finite differences, is an uncontrolled motion."""
 
 STEP = 1e-5
 """Step of the finite differences, relative to the time."""
@@ -149,7 +149,7 @@ def _states_there(instances: Sequence[Instance], end: Array, t: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def _machine() -> Callable[..., None]:
-    """Return the compiled function, which is the same for all models and compiled by one process at a time."""
+    """Return the compiled function for minimum times of many motions, the same for all models."""
     trees = [ast.parse(Path(str(one.__file__)).read_text(encoding="utf-8")).body for one in (planes, arcs, soonest)]
     ours = ("__future__", "satsym")
     body = [n for tree in trees for n in tree if not str(getattr(n, "module", "")).startswith(ours)]
@@ -201,7 +201,7 @@ def _ends(
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Return initial and final states, shapes (M, n), and for which instances the motion remains linear.
 
-    If the final state is on a reference that is itself a motion without control, the difference from the reference is
+    If the final state is on a reference that is itself an uncontrolled motion, the difference from the reference is
     used: its final state is zero, and its drift is removed from ``rates``.
     """
     n, first = len(instances[0].initial), instances[0]

@@ -4,7 +4,7 @@ This source is compiled.
 
 Every motion is x' = A x + B u + d with low <= u <= high, from x(0) to a given final state. ``rates`` contains A, B and
 d side by side, shape (n, n + m + 1). ``powers`` contains the effect of k steps, shape (count + 1, n, n + m + 1): the
-transition matrix, the effect of controls held at one, and the effect of the drift. ``box`` has low and high as rows. A
+transition matrix, the effect of controls equal to one, and the effect of the drift. ``box`` has low and high as rows. A
 plane is given by its normal, the costates at the final time: a final state is not reached if the whole reachable set
 lies on the other side of the plane. The module imports only others that are compiled with it, and its functions also
 run uncompiled. All loops run over numbers, because array expressions are no faster here and take much longer to

@@ -20,7 +20,7 @@ from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.model import Problem, Requirement, symbols_of, t
 
 STEP = "interior_conditions"
-"""Name of the step that occurs only in derivations with interior point conditions."""
+"""Name of the step that occurs only in derivations with waypoints."""
 
 
 def entry(name: str, place: int, count: int) -> str:
