@@ -34,7 +34,7 @@ MOST_BYTES = 1_000_000
 """Largest size of a module file, in bytes; larger files are refused. Shipped modules have a twentieth of that."""
 
 _DECLARING = "satsym.symbolic"
-"""The package that derivation files import but generated modules never do, which distinguishes the two."""
+"""The package that derivation files import, and generated modules never do."""
 _STATED = re.compile(r"""\bProblem\(\s*(?:name\s*=\s*)?["']([a-z][a-z0-9_]{0,99})["']""")
 
 _ANEW = "write it anew with `satsym derive`"

@@ -136,7 +136,8 @@ class Model:
     """Whether time is a plain number even though other variables have units."""
 
     along_chain: ClassVar[bool] = False
-    """Whether this kind can be derived from a model whose states form a chain of integrators without closed form."""
+    """Whether this kind can be derived from a motion whose rates are given by a chain of named parts, not in closed
+    form."""
 
     # What a kind of model says of itself; each has a default, so that a kind states only what it has.
 

@@ -146,7 +146,10 @@ def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> A
 
 @kept
 def _steering(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """Return the transition matrix to time 1, the displacement by the inputs B' e^(-A's) d as M d, and M^+."""
+    """Return the transition matrix to time 1, the matrix M, and its pseudo-inverse.
+
+    The inputs B' e^(-A's) d displace the state at time 1 by M d.
+    """
     n = len(a)
 
     def rates(s: float, x: Array) -> Array:

@@ -56,7 +56,7 @@ class Answer:
     reasons: tuple[str, ...] = ()
     """The relations that decide the answer, with computed values."""
     evidence: Mapping[str, str] = field(default_factory=dict)
-    """Computed values by their terms."""
+    """Term of the proposition -> computed value as text."""
     members: int = 0
     """Number of members of the largest family for which the proposition was evaluated."""
     idle: frozenset[str] = frozenset()

@@ -22,7 +22,7 @@ Key = tuple[str, int]
 """Name of a generated function, and the number of one of the comparisons in it."""
 
 LONGEST_PRODUCT = 1000
-"""Number of terms of a series up to which products with a constant are formed term by term."""
+"""Largest number of terms of a series that may be multiplied by a constant."""
 
 
 class BeyondProof(Exception):

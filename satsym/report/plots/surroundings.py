@@ -62,7 +62,7 @@ class Surroundings:
     other: Array | None = None
     """The uncontrolled motion that the final state has to join, over one revolution."""
     other_start: Array | None = None
-    """Initial position of the target on that motion."""
+    """Initial position of the target on the uncontrolled motion that the final state has to join."""
     moving: Array | None = None
     """Positions of the target at equidistant times from the initial to the final time."""
     burns: Array | None = None

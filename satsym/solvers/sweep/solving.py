@@ -208,7 +208,7 @@ def _explained(problem: SweepProblem, sweep: Sweep, run: Run[Descent] | Run[_Rel
 
 
 def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Solution:
-    """Return the solution without result for an initial motion that leaves the domain or is not finite."""
+    """Return a failed solution, because the initial motion leaves the domain or is not finite."""
     n = len(problem.instance.model.spec.states)
     status = Status.NON_FINITE if start.in_domain else Status.LEFT_DOMAIN
     what = "is not finite" if start.in_domain else "leaves the domain"
