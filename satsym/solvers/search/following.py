@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import TypeVar
 
 import numpy as np
@@ -22,10 +23,10 @@ Answer = TypeVar("Answer")
 BESIDE, ON_FINER_MESH = 120, 200
 """Maximum number of iterations of the interior-point code for a competitor, and on a finer mesh."""
 
-MESHES, FINER, SETTLED_COST, SMOOTHINGS = 5, 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
-"""``MESHES`` is the maximum number of finer meshes; ``FINER`` the fraction of the work that those of one start may
-take; ``SETTLED_COST`` the relative change of the cost between meshes below which refinement ends; ``SMOOTHINGS`` are
-the smoothing parameters of norms on each mesh."""
+FINER, SETTLED_COST, SMOOTHINGS = 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
+"""``FINER`` is the fraction of the work that the finer meshes of one start may take; ``SETTLED_COST`` the relative
+change of the cost between meshes below which refinement ends; ``SMOOTHINGS`` are the smoothing parameters of norms on
+each finer mesh."""
 
 FALLING, RESOLVED, LOST, UNCERTAIN = 1e-2, 1e-2, 50.0, 10.0
 """A motion that costs more than an answer is refined as long as each mesh lowers its cost by the fraction ``FALLING``,
@@ -59,7 +60,7 @@ def followed(
     """
     margin, costs, last = SIMILAR * abs(cost), list[float](), found
     meshes, _ = refined(found)
-    for last in finer(found, limits):
+    for last in finer(found, part(limits)):
         at, residual = motion(last), refined(last)[1]
         falling = at.cost < costs[-1] - FALLING * abs(costs[-1]) if costs else residual > RESOLVED
         costs.append(at.cost)
@@ -77,20 +78,22 @@ def followed(
     change = abs(costs[-1] - costs[-2]) if len(costs) > 1 else 0.0 if finest else np.inf
     resolved = refined(last)[1] < UNRESOLVED
     surely = resolved and costs[-1] + UNCERTAIN * change < cost - margin and not violates(motion(last))
-    if surely or costs[-1] >= cost:
-        return costs[-1], None, False
-    return float("nan"), None, resolved
+    if surely:  # it deserves as much work as its extremal needs
+        further = islice(finer(last, limits, SMOOTHINGS[-1:] * len(SMOOTHINGS)), 1, None)
+        answer = next(filter(None, (exact(motion(one)) for one in further)), None)
+        return (costs[-1], None, False) if answer is None else (*answer, False)
+    return (costs[-1], None, False) if costs[-1] >= cost else (float("nan"), None, resolved)
 
 
-def finer(found: Found, limits: Limits) -> Iterator[Found]:
-    """Yield a solution, and its refinements on successively finer meshes."""
+def finer(found: Found, limits: Limits, smoothings: Sequence[float] = SMOOTHINGS) -> Iterator[Found]:
+    """Yield a solution, and its refinements on successively finer meshes, one for each smoothing of norms."""
     yield found
-    for number in range(MESHES):
+    for smoothing in smoothings:
         meshes, _ = refined(found)
         if sum(len(mesh) - 1 for mesh in meshes) == found.programme.intervals:
             return
         with np.errstate(all="ignore"):
-            one = _again(found, meshes, SMOOTHINGS[number], limits)
+            one = _again(found, meshes, smoothing, limits)
         if not one.solved:
             return
         settled = abs(one.objective - found.objective) <= SETTLED_COST * abs(one.objective)

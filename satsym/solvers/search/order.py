@@ -175,9 +175,7 @@ def _further(
             yield Tried(plan, known)
         else:
             quiet = 0
-            came, answer, unsettled = followed(
-                found, part(limits), cost, lambda at: _costing(exact(at, limits), cost_of)
-            )
+            came, answer, unsettled = followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             unsettled &= not constrained  # with constraints it steps over one, mostly
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None, unsettled)
