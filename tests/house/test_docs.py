@@ -27,11 +27,13 @@ TIMED = re.compile(r"(?<=\s)[\d.]+\s+m?s(?=\))")
 """What differs from run to run: how long solving took."""
 ROUNDING = re.compile(r"(?<![\d.])\d(?:\.\d+)?e-[1-9]\d\b|(?<= )(?:0|\d(?:\.\d+)?e-\d\d)(?= +1e-0\d$)", re.MULTILINE)
 """What differs from machine to machine: residuals at the level of rounding."""
+COUNTED = re.compile(r"\d+(?= iterations?,\s)")
+"""How many iterations Newton's method needed: rounding may decide whether the last one is still taken."""
 
 
 def settled(text: str) -> str:
     """The text without what differs from run to run and from machine to machine."""
-    return ROUNDING.sub("R", TIMED.sub("T", text))
+    return COUNTED.sub("N", ROUNDING.sub("R", TIMED.sub("T", text)))
 
 
 def sessions(text: str) -> Iterator[tuple[str, str]]:
