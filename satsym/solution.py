@@ -107,7 +107,7 @@ class Competitors:
 
     @property
     def unanswered(self) -> int:
-        """Return how many attempts led to no motion that reaches the end."""
+        """Return how many attempts led to no motion that reaches the final state."""
         return self.tried - self.solved
 
 
@@ -197,7 +197,7 @@ class Solution:
     x, u, lam
         States (n, N+1), controls (m, N+1) and costates (n, N+1) at the nodes.
     switching_times
-        For each control, the times at which it meets or leaves a bound.
+        For each control, the times at which it reaches or leaves a bound.
     iterations, history
         Their number, and what each achieved.
     wall_s

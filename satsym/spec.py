@@ -378,7 +378,7 @@ class ProblemSpec:
             stated["interior"] = tuple(InteriorPoint(**entry) for entry in stated.get("interior", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
-            raise ValueError(f"its MODEL has fields that this version of satsym does not know ({error})") from None
+            raise ValueError(f"its MODEL has fields that this version of satsym does not support ({error})") from None
 
 
 def is_name(name: object) -> bool:

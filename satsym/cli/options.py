@@ -110,11 +110,11 @@ subject_argument = click.argument("subject", metavar="X", shell_complete=names.c
 trajectory_option = place_option(
     "--out",
     metavar="DIR",
-    help="Write trajectory.npz, trajectory.csv, instance.toml and result.json into this folder, replacing an earlier "
-    "result.",
+    help="Write trajectory.npz, trajectory.csv, instance.toml and result.json to this folder, replacing any "
+    "earlier result.",
 )
 out_option = place_option(
-    "--out", metavar="DIR", help="Write result.json into this folder, replacing an earlier result."
+    "--out", metavar="DIR", help="Write result.json to this folder, replacing any earlier result."
 )
 
 set_option = click.option(
@@ -122,7 +122,7 @@ set_option = click.option(
     "values",
     multiple=True,
     metavar="KEY=VALUE",
-    help="Change a number of the instance, such as initial.r=1.05; for the keys, see `satsym study`.",
+    help="Change a value of the instance, such as initial.r=1.05; for the keys, see `satsym study`.",
 )
 
 

@@ -248,7 +248,7 @@ class _Reader:
             return Div(left, right)
         if isinstance(link.op, ast.Mult) or (isinstance(link.op, ast.MatMult) and self._judging):
             return Mul((*left.factors, right) if isinstance(left, Mul) else (left, right))
-        raise BadInput(f"only the operators + - * / ** are known here{_column(link)}")
+        raise BadInput(f"only the operators + - * / ** are allowed here{_column(link)}")
 
     def _power(self, found: ast.BinOp, depth: int) -> Node:
         base, exponent = self.node(found.left, depth + 1), self.node(found.right, depth + 1)

@@ -47,7 +47,7 @@ def load(name_or_path: str | Path) -> Instance:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Instance:
-    """A problem with its numbers; made by :func:`load` or :meth:`of`, and immutable.
+    """A problem with its numerical data; made by :func:`load` or :meth:`of`, and immutable.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def switching_times(self) -> dict[str, tuple[float, ...]]:
-        """Return, for each control, the times at which it meets or leaves a bound."""
+        """Return, for each control, the times at which it reaches or leaves a bound."""
         return dict(zip(self._spec.control_names, self.found.switching_times, strict=True))
 
     @property
@@ -63,7 +63,7 @@ class Solution(Result[solution.Solution]):
 
     @property
     def wall_s(self) -> float:
-        """Return the seconds that solving took."""
+        """Return the time that solving took, in seconds."""
         return self.found.wall_s
 
     @cached_property

@@ -88,7 +88,7 @@ def study(
     executor: Callable[[], Executor] | None = None,
     progress: Watch = lambda _: None,
 ) -> Study:
-    """Solve or simulate an instance, or design regulators for it, with many values of some of its numbers.
+    """Solve or simulate an instance, or design regulators for it, over ranges of its inputs (a parameter study).
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ class Trajectory(Result[Simulation]):
 
     @property
     def metrics(self) -> dict[str, float]:
-        """Return the numbers that describe the motion, by name."""
+        """Return the quantities that describe the motion, by name."""
         return self.found.metrics
 
     def to_dict(self) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def export(result: Solution | Trajectory, kind: str, path: str | Path | None = N
     result
         Solution or simulated motion of an instance with a table [orbit].
     kind
-        ``"oem"`` (orbit ephemeris message of CCSDS), ``"czml"`` (Cesium), ``"stk"`` (ephemeris of STK) or ``"csv"``.
+        ``"oem"`` (CCSDS Orbit Ephemeris Message), ``"czml"`` (Cesium), ``"stk"`` (STK ephemeris) or ``"csv"``.
     path
         File to which the text is also written; an existing file is replaced.
 

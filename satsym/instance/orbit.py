@@ -95,7 +95,7 @@ def orbit(table: OrbitTable | None, spec: ProblemSpec) -> OrbitOptions | None:
         return None
     for key, name, names in (("frame", table.frame, FRAMES), ("centre", table.centre, tuple(BODIES))):
         if name not in names:
-            raise BadInput(f"[orbit] {key}: {shown(name)} is not known; {suggestion(name, names)}")
+            raise BadInput(f"[orbit] {key}: {shown(name)} is not supported; {suggestion(name, names)}")
     plane = {"inclination": table.inclination, "node": table.node, "argument": table.argument}
     for key, value in plane.items():
         if value is not None and len(spec.position) == SPACE:

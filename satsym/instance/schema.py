@@ -35,7 +35,7 @@ Bound = Annotated[
 ]
 Ends = Annotated[tuple[float | str, float | str], Meta(description="the first and the last value, such as [1.0, 1e-6]")]
 Matrix = Annotated[
-    list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
+    list[float | list[float]], Meta(description="a list of rows of numbers, or a list of the diagonal entries")
 ]
 Rows = Annotated[list[list[float]], Meta(description="a list of rows of numbers")]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
@@ -263,16 +263,16 @@ class InstanceFile(_Table, frozen=True):
     continuation: Annotated[
         dict[str, Ends],
         Key(
-            "first and last value of a number along a continuation",
+            "first and last values of the continuation parameter",
             ("solve",),
             "the model's",
             "PARAMETER, t0, tf, initial.STATE or final.STATE",
         ),
     ] = {}
     study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
-    orbit: Annotated[
-        OrbitTable | None, Key("when the motion takes place and how its plane lies in space", EXPORTING)
-    ] = None
+    orbit: Annotated[OrbitTable | None, Key("date of the motion, and orientation of its plane in space", EXPORTING)] = (
+        None
+    )
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

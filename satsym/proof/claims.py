@@ -218,5 +218,5 @@ def scope(statement: Statement) -> str:
         "The derivatives and laws of the generated kernel were compared with its motion and costs at random points."
     )
     near = "The theorem does not say how large this neighbourhood is."
-    model = f"The theorem concerns the problem of the model {statement.spec.name} with the numbers listed here:"
+    model = f"The theorem concerns the problem of the model {statement.spec.name} with the values listed here:"
     return f"{model} {numbers} {compared} {near}"

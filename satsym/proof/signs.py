@@ -181,9 +181,9 @@ def unique(shooting: Shooting, passed: Pass) -> str:
 
 def _of_hamiltonian(law: Law, step: Step) -> str:
     if isinstance(law, AtLevels):
-        return "H is linear in the controls and their magnitudes, with strict signs"
+        return "H is linear in the controls and their magnitudes, and no switching function vanishes within an arc"
     if isinstance(law, Throttled):
-        return "H is linear in the controls and their norm, with strict signs"
+        return "H is linear in the controls and their norm, and the switching function does not vanish within an arc"
     assert isinstance(law, Regular | OnBoundary | OnMixed)
     spec = law.kernel.spec
     if spec.control_parts:

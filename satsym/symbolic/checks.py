@@ -182,7 +182,7 @@ def never_below(
         errors = [disagreement(with_digits(below, point)) for point in points(symbols, claim)]
     except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
-            f"the check {claim!r} met values that cannot be ordered, such as complex numbers; declare positive "
+            f"the check {claim!r} encountered values that cannot be ordered, such as complex numbers; declare positive "
             "variables as positive, or give the ranges of the variables: Variable(..., typical=(low, high))"
         ) from error
     return Check(claim, _largest(errors), LIMIT)

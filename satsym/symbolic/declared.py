@@ -100,7 +100,7 @@ def _refuse_constraints(problem: Problem) -> None:
         raise DerivationError(f"{what}: {message}", ("path_constraints",))
     if any(part.kind in ("ball", "annulus") for part in parts):
         message = (
-            "beside bounds of the controls other than those of a box, or an angle, they are not derived; "
+            "they are not derived together with an angle, or with control bounds other than those of a box; "
             "leave out the control set or the constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))

@@ -18,7 +18,7 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 
 PLAIN: Dimension = {}
 _TOLD = {
-    "unknown": "uses {0}, whose dimension is not known",
+    "unknown": "uses {0}, whose dimension is unknown",
     "unequal": "adds or compares {0}, of dimension {1}, and {2}, of dimension {3}",
     "plain": "applies {2} to {0}, of dimension {1}, but the argument must be dimensionless",
     "exponent": "has {0}, of dimension {1}, as an exponent, but exponents must be dimensionless",

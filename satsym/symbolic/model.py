@@ -191,7 +191,7 @@ class Model:
         return (*self.demands, *(d for d in of_origin if d.margin.free_symbols <= own))
 
     def followed(self) -> str:
-        """Return the parameter over which equilibria of an attitude are followed; empty for other models."""
+        """Return the name of the parameter that is varied to follow equilibrium attitudes; empty for other models."""
         return ""
 
     def direction_cosines(self) -> sp.Matrix | None:
@@ -302,8 +302,8 @@ class Problem:
         Waypoints by name, in their order, each with the expressions N(x, t, p) that vanish there: ``{"flyby": (x - a, y
         - b)}``. The times at which they are passed are free.
     control_set
-        ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
-        numbers belong to the instance.
+        ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm);
+        the instance gives the bounds.
     control_sets
         Used in place of `control_set`: the sets whose product is the control set, by name: ``{"thrust": Ball("ux",
         "uy"), "steering": Angle("beta")}``. Each control is in one of them.
@@ -314,7 +314,7 @@ class Problem:
         Whether the objective, the integral of `running_cost` plus `terminal_cost`, is maximised. The derivation and the
         kernels minimise its negative, to which the costates belong; reports show the objective.
     unit
-        Unit of the objective, such as ``"km"``; a unit that does not agree with the terms of the objective is refused.
+        Unit of the objective, such as ``"km"``; a unit that does not agree with the terms of the objective is rejected.
     """
 
     name: str

@@ -80,7 +80,7 @@ MATRICES = {
     "rows": ([["1", "0"], ["0", "0"], ["0", "0"], ["0", "1/x1"]], "Rows 1 and 2 are exchanged."),
     "columns": ([["0", "0"], ["0", "1"], ["0", "0"], ["1/x1", "0"]], "Columns 1 and 2 are exchanged."),
     "entries": ([["0", "0"], ["1/x1", "0"], ["0", "0"], ["0", "1"]], "The entries (2, 1) and (4, 2) are exchanged."),
-    "size": ([["0", "0"]], "The size does not fit: the printed matrix is 1 by 2, but should be 4 by 2."),
+    "size": ([["0", "0"]], "The size is wrong: the printed matrix is 1 by 2, but should be 4 by 2."),
     "entry": ([["0", "0"], ["1", "0"], ["0", "0"], ["0", "-1/x1"]], "Entry (4, 2): the sign of `1/x1` is reversed."),
     "two entries": (
         [["0", "0"], ["-1", "0"], ["0", "0"], ["0", "1/x1**2"]],

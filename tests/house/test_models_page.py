@@ -95,7 +95,7 @@ def test_refusals_are_quoted_as_they_are_given() -> None:
     ]
     source = "".join(path.read_text(encoding="utf-8") for path in files)
     text = re.sub(r"""["']\s*\n\s*f?["']""", "", source)
-    quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When a model is refused")[2], re.MULTILINE)[1:]
+    quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When a model is rejected")[2], re.MULTILINE)[1:]
     quoted = [line for line in quoted if line != "---"]
     assert quoted
     for message in quoted:

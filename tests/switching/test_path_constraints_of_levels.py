@@ -191,10 +191,10 @@ def test_a_wrong_multiplier_fails_its_check(wrong: str, monkeypatch: pytest.Monk
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"path_constraints": {"mixed": u + v - 1}}, "mixed: H is linear in the controls, beside which a constraint"),
+        ({"path_constraints": {"mixed": u + v - 1}}, "mixed: H is linear in the controls, so a constraint"),
         (
             {"path_constraints": {"limit": v - 1}, "running_cost": sp.Abs(u)},
-            "beside .u. they are not derived",
+            "they are not derived together with .u.",
         ),
     ],
 )

@@ -369,8 +369,8 @@ def _said_of_pulses(found: Plant, arcs: list[Arc]) -> str:
     start = float(found.instance.initial[found.rate])
     if start:
         return (
-            f"the final value of {name} is {rate:.6g}, not zero: the motion did not start at rest, and a "
-            "feedback of the position alone does not detect this"
+            f"the final value of {name} is {rate:.6g}, not zero: the motion did not start at rest, and "
+            "feedback of the position alone cannot detect this"
         )
     within = abs(found.error(last)) <= found.deadband
     return "within the deadband, at rest" if within else "outside the deadband at the final time"

@@ -276,7 +276,7 @@ def _one(eigenvalues: Sequence[Eigenvalue]) -> Stability:
         reason = (
             f"the eigenvalue {shown(worst.value)} on the imaginary axis has a Jordan block of size {size} "
             f"(multiplicity {worst.algebraic}, {worst.geometric} eigenvector{'s' * (worst.geometric > 1)}), "
-            f"so that deviations grow like {growth}"
+            f"so deviations grow like {growth}"
         )
         return Stability(UNSTABLE, reason, False)
     listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)

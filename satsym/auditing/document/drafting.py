@@ -86,7 +86,9 @@ def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> 
     old = _parsed(before)
     model = model or str(old.get("document", {}).get("model", ""))
     if not model:
-        raise BadInput(f"{path}: the model of the document is not known; give --model NAME or --model DIR/NAME")
+        raise BadInput(
+            f"{path}: the model to which the document refers is unknown; give --model NAME or --model DIR/NAME"
+        )
     source = displays.read(path)
     place, name = shelf.place_of(model, path.parent)
     with shelf.opened(place):

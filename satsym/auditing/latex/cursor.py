@@ -116,7 +116,7 @@ class Cursor(ABC):
         if token.kind == "macro" and token.text == "remark":
             raise Unread("words inside a formula are not supported", token.at)
         if token.text in RELATIONS:
-            raise Unread("a relation inside brackets or arguments is not supported", token.at)
+            raise Unread("relations inside brackets or arguments are not supported", token.at)
         sign = "\\" if token.kind == "macro" else ""
         raise Unread(f'"{sign}{printable(token.text)}" is not supported here', token.at)
 
@@ -180,7 +180,7 @@ class Cursor(ABC):
             self._i += 1
         if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
             raise Unread(
-                "a bracket is closed by one of another kind, as in a half-open interval, which is not supported",
+                "brackets of different kinds around an expression, as in a half-open interval, are not supported",
                 opening.at,
             )
         return self._i - 1

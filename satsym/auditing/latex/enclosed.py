@@ -187,7 +187,7 @@ class EnclosedCursor(RefusalCursor):
         while True:
             if self._peek() is None:
                 raise Unread(
-                    "a vertical bar without a closing one, as in an evaluation at a point, is not supported", token.at
+                    "vertical bars without a closing bar, as in evaluations at a point, are not supported", token.at
                 )
             inside = self._take()
             groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))

@@ -62,12 +62,12 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         reading.differential = -1
         sides = [Parser(part, reading, start).side() for part in line.sides]
         if reading.differential >= 0 and line.bare:
-            raise Unread("a differential is not supported", reading.differential)
+            raise Unread("differentials are not supported", reading.differential)
         reading.statements += sides if line.bare else []
         for sign, side, (one, other) in zip(line.signs, line.sides[1:], pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
                 raise Unread(
-                    "a bracket with a comma is not supported here, as it could be a commutator", line.sides[0][0].at
+                    "brackets with a comma are not supported here, as they could be commutators", line.sides[0][0].at
                 )
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
@@ -77,7 +77,7 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
             if Sym("nabla") in (one, other):
                 raise Unread("a nabla on its own is not a quantity", line.sides[0][0].at)
             if reading.differential >= 0 and not (sign == "=" and are_differentials(one, other)):
-                raise Unread("a differential is not supported", reading.differential)
+                raise Unread("differentials are not supported", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
             if sign == "=" and taken and _stands_in(one, other):
                 raise Unread("this letter occurs both with and without an argument", line.sides[0][0].at)
@@ -177,7 +177,7 @@ class Parser(SumCursor):
             raise Unread("a colon is not supported here", slash.at)
         divisor, unit = self._signed_factor(), self._peek()
         if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
-            raise Unread("a unit after a slash is not supported", unit.at)
+            raise Unread("units after a slash are not supported", unit.at)
         if unit is not None and self._may_be_divided_by(unit, chain, divisor):
             raise Unread("without brackets, it is not clear what the slash divides by", slash.at)
         return Div(product_of(chain), divisor)
@@ -384,9 +384,9 @@ class Parser(SumCursor):
         if plain and after is not None and self._begins_factor(after) and after.text != "(":
             raise Unread("words inside a formula are not supported", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and letter.base in words.UNITS:
-            raise Unread("a unit in a formula is not supported", token.at)
+            raise Unread("units in formulas are not supported", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
-            raise Unread(f"the function {printable(letter.base)} is not known", token.at)
+            raise Unread(f"unknown function {printable(letter.base)}", token.at)
         return self._symbol(letter, token.at)
 
 

@@ -124,7 +124,7 @@ class OperatorCursor(QuotientCursor):
             base = self._inner(self._script(), at)
             return Div(self._function(name, token), Call("log", (base,)))
         if self._is("_") and name in ("min", "max"):
-            raise Unread(f"an index of {name} is not supported", self._take().at)
+            raise Unread(f"indices of {name} are not supported", self._take().at)
         if self._is("(") or self._is("["):
             arguments = self._arguments()
         elif self._is("{", kind="open") or self._peek() is None:
@@ -171,14 +171,14 @@ class OperatorCursor(QuotientCursor):
         vectors = inner.factors[-1] if isinstance(inner, Mul) else inner
         letter = self._reading.letters.get(vectors.name) if isinstance(vectors, Sym) else None
         if square and letter and letter.bold and not letter.marks and (not self._is("^") or self._is("2", 1, "number")):
-            raise Unread("a vector in square brackets is not supported, as it could mean its matrix", at)
+            raise Unread("vectors in square brackets are not supported, as they could mean matrices", at)
         if square and isinstance(inner, Sym) and inner.name.islower() and begin == 0 and self._peek() is None:
-            raise Unread("a letter in square brackets is not supported, as it could mean its dimension", at)
+            raise Unread("letters in square brackets are not supported, as they could mean dimensions", at)
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
         if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
-            raise Unread("a bracket with a comma is not supported, as it could be a Lie bracket", at)
+            raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
             if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
@@ -279,7 +279,7 @@ class OperatorCursor(QuotientCursor):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if timed or self._place(inside) is not None or self._is_taken(inside):
             raise Unread(
-                "a power between a function and its argument, as in x^2(t), is not supported", self._found[begin].at
+                "powers between a function and its argument, as in x^2(t), are not supported", self._found[begin].at
             )
         self._i = begin
         return base
@@ -317,14 +317,14 @@ class OperatorCursor(QuotientCursor):
         if value is None:  # a power, or an index above
             letters = [t.kind == "letter" or t.text in GREEK for t in script]
             if (len(letters) > 1 and all(letters)) or (isinstance(exponent, Call) and exponent.function != "transpose"):
-                raise Unread("an exponent of several letters is not supported", at)
+                raise Unread("exponents of several letters are not supported", at)
             return Call("raised", (base, exponent))
         if value == 0:
             raise Unread("an exponent of zero could be an index", at)
         if base == Num(Fraction(10)):  # an order of magnitude
             return Pow(base, exponent) if abs(value) <= MAX_EXPONENT else Call("power", (base, exponent))
         if abs(value) > MAX_EXPONENT:
-            raise Unread(f"an exponent above {MAX_EXPONENT} is not supported", at)
+            raise Unread(f"exponents above {MAX_EXPONENT} are not supported", at)
         return Pow(base, exponent)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:

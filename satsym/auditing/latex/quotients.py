@@ -95,7 +95,7 @@ class QuotientCursor(LetterCursor):
         """Read the letter of a differential."""
         letter = self._letter()
         if letter is None:
-            raise Unread("a differential is not supported", at)
+            raise Unread("differentials are not supported", at)
         self._reading.differential = at
         return Call("differential", (self._symbol(letter, at),))
 
@@ -183,7 +183,7 @@ class QuotientCursor(LetterCursor):
                 inner._i += 3
             if inner._is("("):
                 raise Unread(
-                    "a derivative with respect to a value at a given time is not supported", below[inner._i].at
+                    "derivatives with respect to a value at a given time are not supported", below[inner._i].at
                 )
             if inner._is("^"):
                 inner._i += 1

@@ -57,7 +57,7 @@ class RefusalCursor(OperatorCursor):
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
             if said in words.UNITS and (plain or constant(last) is not None):
-                raise Unread("a unit in a formula is not supported", token.at)
+                raise Unread("units in formulas are not supported", token.at)
             if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
                 raise Unread("words inside a formula are not supported", token.at)
         if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
@@ -74,7 +74,7 @@ class RefusalCursor(OperatorCursor):
         stem = last.arguments[0] if isinstance(last, Call) and last.function == "raised" else stem
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         if letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in FIELDS:
-            raise Unread("a derivative along a vector field is not supported", token.at)
+            raise Unread("derivatives along vector fields are not supported", token.at)
         applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)
@@ -120,14 +120,14 @@ class RefusalCursor(OperatorCursor):
             return
         apart = above[1].at > above[0].at + 2
         if above[0].text == "d" and apart and (above[1].kind == "letter" or above[1].text in GREEK):
-            raise Unread("a differential is not supported", above[0].at)
+            raise Unread("differentials are not supported", above[0].at)
 
     def _refuse_units(self, above: Sequence[Token], below: Sequence[Token]) -> None:
         """Refuse a quotient whose numerator and denominator are units, such as m/s."""
         said = ["".join(t.text for t in part[1:]).strip("{}") for part in (above, below)]
         set_upright = all(part and part[0].text in words.UPRIGHT for part in (above, below))
         if set_upright and all(one.partition("}")[0] in words.UNITS for one in said):
-            raise Unread("a unit in a formula is not supported", above[0].at)
+            raise Unread("units in formulas are not supported", above[0].at)
 
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
         """Refuse upright words that are no letters: unknown functions, and plain language."""
@@ -139,4 +139,4 @@ class RefusalCursor(OperatorCursor):
         if word.lower() in words.SAID or parted:
             raise Unread("words inside a formula are not supported", at)
         if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
-            raise Unread(f"the function {printable(word)} is not known", at)
+            raise Unread(f"unknown function {printable(word)}", at)

@@ -87,9 +87,9 @@ def _refuse_arrow(line: Line) -> None:
     """Refuse an arrow that could mean a limit, an implication or a map, and an inequality in a chain of relations."""
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
         if sign == "unequal" and len(line.signs) > 1:
-            raise Unread("an inequality in a chain of relations is not supported", (after or before)[0].at)
+            raise Unread("inequalities in chains of relations are not supported", (after or before)[0].at)
         if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
-            raise Unread("an arrow between more than two expressions is not supported", (after or before)[0].at)
+            raise Unread("arrows between more than two expressions are not supported", (after or before)[0].at)
 
 
 def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:

@@ -81,7 +81,7 @@ class SumCursor(EnclosedCursor):
                     name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
                     return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
             self._i = here + 1
-        raise Unread("an integral without a differential at its end is not supported", token.at)
+        raise Unread("integrals without a differential at the end are not supported", token.at)
 
     def _put_differential_last(self) -> None:
         """Move a differential that is printed in a numerator, or before the integrand, after the integrand."""

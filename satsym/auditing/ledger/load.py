@@ -249,7 +249,7 @@ class _Reader:
             with self._telling("row", "from", index, row.key):
                 for name in row.uses:
                     if name not in by_key or name == row.key:
-                        raise BadInput(f"there is no other row {shown(name)}; {suggestion(name, by_key)}")
+                        raise BadInput(f"{shown(name)} is not another row of the ledger; {suggestion(name, by_key)}")
 
     def _check_units(self, found: Sequence[Row]) -> None:
         for name, text in self._inputs.items():

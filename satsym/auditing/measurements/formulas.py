@@ -74,7 +74,7 @@ def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float
 
     letters = {s.name: s for rate in rates for s in rate.free_symbols}
     if unknown := sorted(letters.keys() - {*names}):
-        raise BadInput(f"the rates contain {', '.join(unknown)}, which has no number; replace it by a number")
+        raise BadInput(f"the rates contain {', '.join(unknown)}, which has no numerical value; replace it by a number")
     found = formulas.compiled(rates, [letters.get(name, formulas.symbol(name)) for name in names])
     times = np.linspace(0.0, until, _POINTS + 1)
     path = solve_ivp(

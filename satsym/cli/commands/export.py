@@ -23,7 +23,7 @@ KINDS = ("oem", "czml", "stk", "csv")
 EXAMPLES = """\b
 Examples:
   satsym export return-to-geo --format oem > geo.oem    an orbit ephemeris message of CCSDS, with its manoeuvres
-  satsym export return-to-geo --format czml --out geo.czml    to be seen in Cesium
+  satsym export return-to-geo --format czml --out geo.czml    for viewing in Cesium
   satsym export molniya --format stk --out molniya.e    an uncontrolled motion, for STK
   satsym export return-to-geo --format csv --from results/return-to-geo/solve    of a saved result"""
 
@@ -39,9 +39,9 @@ Examples:
 def export(subject: str, kind: str, out: Path | None, source: Path | None, values: tuple[str, ...]) -> ExitCode:
     """Write a motion about a central body for other programs.
 
-    X is an instance as for `satsym solve`, with a table [orbit] that says when the motion takes place and how its
-    plane lies in space. The instance is solved; if its model has no cost, the uncontrolled motion is simulated.
-    Formats are oem (orbit ephemeris message of CCSDS), czml (Cesium), stk (ephemeris of STK) and csv.
+    X is an instance as for `satsym solve`, with a table [orbit] that gives the date of the motion and the orientation
+    of its plane in space. The instance is solved; if its model has no cost, the uncontrolled motion is simulated.
+    Formats are oem (CCSDS Orbit Ephemeris Message), czml (Cesium), stk (STK ephemeris) and csv.
     """
     from satsym import instance
     from satsym.instance.numbers import changed

@@ -30,7 +30,7 @@ Boundary types: 1 final time and final state given; 2 final time free; 3 final s
 def instances(name: str | None, keys: bool, schema: bool, whole: bool, as_json: bool) -> ExitCode:
     """List the shipped instances, by subject.
 
-    An instance is a problem with its numbers, ready to be solved. With X, print the file of that instance.
+    An instance is a problem with its numerical data, ready to be solved. With X, print the file of that instance.
     """
     if sum((name is not None, keys, schema)) > 1:
         raise click.UsageError("Give only one of X, --keys and --schema.")

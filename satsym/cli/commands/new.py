@@ -21,7 +21,7 @@ Examples:
 TEMPLATES = Path(__file__).parents[2] / "templates"
 FILES = {
     "model.py.txt": ("{}.py", "the model: its motion and its cost"),
-    "instance.toml": ("{}.toml", "an instance: the numbers of one case"),
+    "instance.toml": ("{}.toml", "an instance: the data of one case"),
     "test.py.txt": ("test_{}.py", "a test of the solution against equations typed by hand"),
 }
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")

@@ -35,7 +35,7 @@ Examples:
 def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
     """Draft a ledger of a document. The ledger lists the displayed formulas, and what each is to be checked against.
 
-    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address of the model; you confirm
+    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address in the model; you confirm
     a row by deleting its line `draft = true`. If the document is read again, confirmed rows are kept. Formulas that
     cannot be read are listed with their places.
     """

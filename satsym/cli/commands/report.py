@@ -33,7 +33,7 @@ Examples:
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="Write the page to this file, which is replaced if it exists.")
 @place_option(
-    "--derivation", "stated", metavar="FILE.py", help="Derivation file of the model of X, if the model is your own."
+    "--derivation", "stated", metavar="FILE.py", help="Derivation file of X's model, if the model is your own."
 )
 @click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
 @place_option(

@@ -183,7 +183,7 @@ def constraints(scene: Scene) -> list[Series]:
             upper=0.0,
             active=rows[k] >= -ON_BOUND * _largest(rows[k]),
             switching=tuple(event.t / scene.time_factor for event in met if event.name == name),
-            said="met at <times>",
+            said="reached at <times>",
             from_zero=True,
         )
         for name, k in stated.items()

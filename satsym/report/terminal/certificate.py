@@ -25,7 +25,7 @@ _HOLDS = {
     "stated switching times, to the spacing of the nodes": (
         "controls switch between the nodes adjacent to the stated times"
     ),
-    "stated times of saturation": "controls meet their bounds at the stated times",
+    "stated times of saturation": "controls reach their bounds at the stated times",
     "the two minimisers of H are still equally good after a jump": (
         "the two minimisers of H are equally good only at the jump itself"
     ),
@@ -41,12 +41,12 @@ _HOLDS = {
     "jump of the costates": "costates jump along the gradient of the constraint",
     "kernels contradict each other": "generated kernels agree",
     "a terminal limit is violated": "terminal limits satisfied",
-    "the multiplier of a terminal limit vanishes": "multipliers of terminal limits not zero",
+    "the multiplier of a terminal limit vanishes": "multipliers of terminal limits nonzero",
     "a multiplier vanishes on a boundary arc": "multipliers positive along boundary arcs",
-    "negative multiplier of a terminal limit": "multipliers of terminal limits not negative",
-    "negative multiplier": "multipliers of path constraints not negative",
-    "multiplier on a boundary is negative": "multipliers of path constraints not negative",
-    "multiplier at a junction is negative": "multipliers at junctions not negative",
+    "negative multiplier of a terminal limit": "multipliers of terminal limits nonnegative",
+    "negative multiplier": "multipliers of path constraints nonnegative",
+    "multiplier on a boundary is negative": "multipliers of path constraints nonnegative",
+    "multiplier at a junction is negative": "multipliers at junctions nonnegative",
     "no cheaper competitor": "no control can be cheaper",
     "no proof of a minimum along singular arcs: the problem is not convex": (
         "problem convex, so singular arcs are optimal"

@@ -22,7 +22,7 @@ write the keys as JSON Schema, `satsym instances --schema > instance.schema.json
 
 `model`, `[initial]` and `[time] tf` are all that solving needs. Names in capitals stand for those of the model, which
 `satsym models MODEL` lists with their units and defaults. A number is in the unit that is listed; a text may carry its
-own, such as `"5 km"`. Unknown keys are refused.
+own, such as `"5 km"`. Unknown keys are rejected.
 """
 
 

@@ -142,7 +142,7 @@ def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:
     if array.on_axis:
         says = say("<routh>, <number> on the imaginary axis", routh=says, number=array.on_axis)
     if array.special_case:
-        says = say("<routh> (met: <case>)", routh=says, case=message(array.special_case))
+        says = say("<routh> (special case: <case>)", routh=says, case=message(array.special_case))
     return wrapped(f"{what}: {written.replace('+ -', '- ')}") + wrapped(says)
 
 
@@ -213,7 +213,7 @@ def _number(found: Attitudes) -> str:
     """State the number of equilibria, or describe the infinite set of them."""
     whole = found.continuum
     if whole is None:
-        return say("<count> attitudes (<number> with complex ones)", count=found.count, number=found.complex)
+        return say("<count> attitudes (<number> including complex ones)", count=found.count, number=found.complex)
     if whole.circles is None:
         text = "infinitely many: a set of dimension <n> (complex attitudes included), which is not resolved"
         return say(text, n=whole.dimension)

@@ -68,7 +68,7 @@ class Repeated:
     instance
         The instance. Its final conditions, final time and bounds stay fixed.
     compiled
-        Whether functions are compiled; by default if numba is installed.
+        Whether to compile functions; by default they are compiled if numba is installed.
 
     Attributes
     ----------
@@ -99,8 +99,8 @@ class Repeated:
         instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
-                f"{instance.called}: the controls of {instance.model.spec.name} switch, which repeated solving does "
-                f"not support; solve each instance separately"
+                f"{instance.called}: the controls of {instance.model.spec.name} switch, but repeated solving does "
+                f"not support switching controls; solve each instance separately"
             )
         if instance.end_limits:
             name = next(iter(instance.end_limits))

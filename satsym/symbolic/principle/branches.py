@@ -101,7 +101,7 @@ def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tup
             norms = {norm_of(other) for other in parts if other is not part}
             if mixed := sorted(v.name for v in slope.free_symbols & (others | norms)):
                 raise DerivationError(
-                    f"{name}: H has products of {u.name} and {', '.join(mixed)}, which belong to different "
+                    f"{name}: H contains products of {u.name} and {', '.join(mixed)}, which belong to different "
                     "control sets; this is not supported: declare them as one set, such as the components of a vector"
                 )
             if slope.has(sp.sign):
@@ -185,7 +185,7 @@ def _of_angle(name: str, h: sp.Expr, part: Part) -> Minimum:
     if parts is None:
         raise DerivationError(
             f"{name}: H does not have the form a cos({angle.name}) + b sin({angle.name}) + c, so the angle "
-            "that minimises H is not known"
+            "that minimises H cannot be derived"
         )
     _, cosine, sine = parts
     return Minimum(part, "direction", (tidy(cosine), tidy(sine)))
@@ -215,7 +215,9 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
     weight = sp.diff(h, norm)
     if weight != 0:
         if weight.has(norm, *part.symbols) or any(slope.has(norm, *part.symbols) for slope in slopes):
-            raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
+            raise DerivationError(
+                f"{name}: an H that is not jointly linear in {controls} and their norm is not supported"
+            )
         if len(slopes) == 1:
             raise DerivationError(
                 f"{name}: the norm of the single control {controls} is its magnitude; use a Box, and write |{controls}|"
@@ -253,12 +255,13 @@ def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimu
     controls = ", ".join(u.name for u in part.symbols)
     if part.kind not in ("free", "box"):
         raise DerivationError(
-            f"{name}: H is neither linear nor quadratic in {controls}, so this control must have a box or no bounds"
+            f"{name}: H is neither linear nor quadratic in {controls}, so this control must be "
+            "unbounded (Free) or have bounds of its own (Box)"
         )
     apart = all(not s.has(*(v for v in part.symbols if v != u)) for u, s in zip(part.symbols, slopes, strict=True))
     if not apart:
         raise DerivationError(
-            f"{name}: H is not quadratic in {controls} but has products of these controls, which is not supported"
+            f"{name}: an H that contains products of {controls} but is not quadratic in them is not supported"
         )
     if part.kind == "free" and any(by_circle(h, u) for u in part.symbols):
         raise DerivationError(f"{name}: {controls} is an angle without bounds; use Angle({controls!r})")

@@ -247,8 +247,8 @@ def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
             real = [v for v in found if finite([v]) and not mp.im(v)]
             if len({v > 0 for v in real if v}) > 1:
                 raise DerivationError(
-                    f"{name}: H is convex in {u} in some places only, so H might have several local minima, "
-                    "which are not compared; choose as the control a quantity in which H is a polynomial (a "
-                    "reaction rate instead of a temperature, for instance) and give both its bounds, or use a model "
+                    f"{name}: H is convex in {u} only in part of the domain, so H might have several local "
+                    "minima, and these are not compared; choose as the control a quantity in which H is a polynomial "
+                    "(a reaction rate instead of a temperature, for instance) and give both its bounds, or use a model "
                     "in which H is convex in the control"
                 )

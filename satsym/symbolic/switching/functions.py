@@ -312,8 +312,8 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
         weight = tidy(sp.diff(cost, v))
         if not weight.is_nonnegative:
             raise DerivationError(
-                f"{name}: the weight of |{u.name}| in the cost, {weight}, might be negative, which is not "
-                "supported; declare the factors of the weight positive"
+                f"{name}: the weight of |{u.name}| in the cost, {weight}, might be negative, but negative "
+                "weights are not supported; declare the factors of the weight positive"
             )
         if weight == 0 and all(vanishes(sp.diff(e, u)) for e in (cost, *f)):
             raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")

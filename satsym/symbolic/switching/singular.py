@@ -284,11 +284,11 @@ def refuse_mixtures(so_far: Derivation) -> None:
     controls, what = symbols_of(problem.model.controls), f"{problem.name}: path_constraints"
     held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
     if held:
-        message = f"{what} {held[0]}: H is linear in the controls, beside which a constraint that holds one is not "
+        message = f"{what} {held[0]}: H is linear in the controls, so a constraint that contains a control "
         raise DerivationError(
-            f"{message}derived; write the constraint as a bound on that control", ("path_constraints",)
+            f"{message}is not derived; write the constraint as a bound on that control", ("path_constraints",)
         )
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
-        message = "beside |u| they are not derived; use two controls, one for each sign, both with the lower bound 0"
+        message = "they are not derived together with |u|; use two controls, one for each sign, with the lower bound 0"
         raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))

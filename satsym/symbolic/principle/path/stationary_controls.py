@@ -33,11 +33,20 @@ def refuse_jumping(name: str, every: Sequence[Minimum]) -> None:
     for one in every:
         controls = ", ".join(u.name for u in one.part.symbols)
         if one.part.kind not in ("free", "box", "angle"):
-            message = f"bounds on the norm of {controls} are not supported together with them; use a box or an angle"
+            message = (
+                f"bounds on the norm of {controls} are not supported together with path constraints; use a box or an "
+                "angle"
+            )
         elif one.branch in ("switched", "throttled"):
-            message = f"H is linear in {controls}; they are derived where H has a strict minimum in all controls"
+            message = (
+                f"H is linear in {controls}; path constraints are derived only where H has a strict minimum in all "
+                "controls"
+            )
         elif any(law.has(Vertex, Argmin) for law in one.laws):
-            message = f"H is not always convex in {controls}, which may jump; they are derived where it is"
+            message = (
+                f"H is not always convex in {controls}, which may therefore jump; path constraints are derived only "
+                "where H is convex"
+            )
         else:
             continue
         raise DerivationError(f"{name}: path_constraints: {message}", ("path_constraints",))
