@@ -97,8 +97,8 @@ def study(
     folder
         Output folder. If it contains a study, this must be the same study, and only missing cases are computed.
     vary
-        A grid: for each key, the lowest value, the highest value and their number, ``(0.9, 1.1, 50)``, or a text such
-        as ``"log:1:100:20"``.
+        A grid: for each key, the lowest value, the highest value and the number of values, ``(0.9, 1.1, 50)``,
+        or a text such as ``"log:1:100:20"``.
     normal, uniform
         Distributions from which `sample` cases are drawn: for each key, the mean and the standard deviation, or the two
         ends of the interval.
@@ -107,7 +107,7 @@ def study(
     table
         Format of the table: ``"csv"``, the default, or ``"parquet"``, which needs pyarrow (extra ``table``).
     resume
-        Whether a study in the output folder is continued.
+        Whether to continue a study in the output folder.
     workers
         Number of processes; by default one for each processor that this process may use.
     executor

@@ -65,7 +65,7 @@ def varied(
                 f"{place}: both values are {shown(ends[0])}; write two different values, the first and the last"
             )
         if not key.given(given):
-            raise BadInput(f"{place}: the instance gives no number for this key; give it a number")
+            raise BadInput(f"{place}: the instance gives no numerical value for this key; give it a number")
         found.append(Varied(key, begin, end))
     for share in (0.0, 1.0):
         case = given

@@ -199,7 +199,7 @@ def find(text: str, instance: Instance) -> Key:
     Raises
     ------
     BadInput
-        If there is none, or the instance gives no number for it.
+        If there is none, or the instance gives no numerical value for it.
     """
     key = named(text, instance, printable(text))
     if key.table is Table.FINAL and key.name in instance.ranges:
@@ -210,7 +210,7 @@ def find(text: str, instance: Instance) -> Key:
     if guessed and instance.tf is not None:
         raise BadInput(f"{key.text}: {instance.called} gives the final time; set time.tf, or leave out this key")
     if not guessed and not key.given(instance):
-        raise BadInput(f"{key.text}: {instance.called} gives no number for this key; add a number there")
+        raise BadInput(f"{key.text}: {instance.called} gives no numerical value for this key; add a number there")
     return key
 
 

@@ -106,7 +106,7 @@ def _values(value: float | str | list[float | str], variable: Variable, what: st
 def _no_repetition(names: Sequence[str], key: str) -> None:
     for name in names:
         if names.count(name) > 1:
-            raise BadInput(f"{key}: {shown(name)} is listed twice; name each control only once")
+            raise BadInput(f"{key}: {shown(name)} is listed twice; list each control only once")
 
 
 MOST_BYTES = 2**31

@@ -190,7 +190,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
             f"{shown(model)}: lies outside the folder of the instance file; move the module into that folder"
         )
     if not regular:
-        raise BadInput(f"{shown(model)}: not a file; name a module written by `satsym derive`")
+        raise BadInput(f"{shown(model)}: not a file; give the name of a module written by `satsym derive`")
     return path, root
 
 
@@ -200,12 +200,16 @@ def _read(model: str, path: Path) -> str:
         with path.open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
-            raise BadInput(f"{shown(model)}: larger than {MOST_BYTES} bytes; name a module written by `satsym derive`")
+            raise BadInput(
+                f"{shown(model)}: larger than {MOST_BYTES} bytes; give the name of a module written by `satsym derive`"
+            )
         return data.decode("utf-8")
     except OSError as error:
         raise BadInput(f"{shown(model)}: cannot be read ({error.strerror}); check its permissions") from None
     except UnicodeDecodeError:
-        raise BadInput(f"{shown(model)}: not UTF-8 text; name a module written by `satsym derive`") from None
+        raise BadInput(
+            f"{shown(model)}: not UTF-8 text; give the name of a module written by `satsym derive`"
+        ) from None
 
 
 @lru_cache(maxsize=32)

@@ -180,7 +180,7 @@ class Model:
         return (*self.states, *self.controls)
 
     def carried(self) -> tuple[Output, ...]:
-        """Return the quantities derived along the motion, which a running cost may name."""
+        """Return the quantities derived along the motion, to which a running cost may refer."""
         origin = self.origin()
         return origin.carried() if origin else ()
 

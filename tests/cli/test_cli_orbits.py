@@ -108,7 +108,7 @@ def test_people_get_the_facts_and_what_they_mean(name: str, capsys: pytest.Captu
     assert max(map(len, out.splitlines())) <= 100
     words = " ".join(out.split())
     assert "the rule does not distinguish between orbits" in words
-    assert 'rule of the signs, "stable if all(e.real <= 0)": unstable' in words
+    assert 'sign rule, "stable if all(e.real <= 0)": unstable' in words
     if name == "itb-earth-escape":
         assert "classified as a hyperbola" in words
         assert "Floquet multipliers: no period" in words

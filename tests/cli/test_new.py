@@ -74,7 +74,7 @@ def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original
         (["polar_orbit"], "NAME: polar_orbit is a model that comes with satsym"),
         (["a/b", "--instance", "soft-return"], 'NAME: got "a/b"; write letters'),
         (["mine", "--instance", "soft-retur"], 'no instance of this name; did you mean "soft-return"?'),
-        (["mine", "--instance", "x/y.toml"], '--instance: "x/y.toml" is a path; name a shipped instance'),
+        (["mine", "--instance", "x/y.toml"], '--instance: "x/y.toml" is a path; give the name of a shipped instance'),
     ],
 )
 def test_names_that_will_not_do_are_refused(run: Run, tmp_path: Path, arguments: list[str], message: str):

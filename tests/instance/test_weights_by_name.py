@@ -74,7 +74,7 @@ def test_weights_are_changed_by_name(tmp_path: Path) -> None:
     assert changed(instance.load("uny-lqr"), {"lqr.N.x1.u2": 0.5}).lqr.N == ((0.5,), (0.0,), (0.0,), (0.0,))
     with pytest.raises(BadInput, match=r"\[lqr\] R: not positive definite"):
         changed(given, {"lqr.R.u2": 0.0})
-    with pytest.raises(BadInput, match=r"lqr.R.u1: .* gives no number for this key"):
+    with pytest.raises(BadInput, match=r"lqr.R.u1: .* gives no numerical value for this key"):
         changed(given, {"lqr.R.u1": 1.0})
 
 

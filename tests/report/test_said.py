@@ -119,7 +119,7 @@ COMPOSED = (
     "<other>: <why>",
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "there is no published constant <a>",
-    "the instance gives no number for <a>",
+    "the instance gives no numerical value for <a>",
     *("an integral", "a negation", "a product over an index", "a double sign", "a quantifier"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",

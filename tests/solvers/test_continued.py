@@ -115,7 +115,7 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         ({"a": [1, 1]}, r"\[continuation\] a: both values are 1"),
         ({"a": 1}, r"\[continuation\] a: got 1; write the first and the last value"),
         ({"tf": [1, -1]}, r"\[continuation\]: tf = -1 is not after t0 = 0"),
-        ({"final.x": [1, 2]}, r"\[continuation\] final.x: the instance gives no number for this key"),
+        ({"final.x": [1, 2]}, r"\[continuation\] final.x: the instance gives no numerical value for this key"),
     ],
 )
 def test_a_way_that_makes_no_sense_is_refused(way: dict[str, Any], message: str) -> None:

@@ -166,7 +166,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
         ({"vary": {"initial.r": "1:2:3"}, "sample": 3}, "not both"),
         ({"vary": {"initial.r": "1:2:3"}, "method": "lhs"}, "applies to samples only"),
         ({"vary": {"time.tf": "-1:2:3"}}, "is not after t0"),
-        ({"vary": {"final.theta": "1:2:3"}}, "gives no number for this key"),
+        ({"vary": {"final.theta": "1:2:3"}}, "gives no numerical value for this key"),
         ({"uniform": {"initial.r": "1,2"}}, "--sample N"),
         ({"uniform": {"initial.r": "2,1"}, "sample": 3}, "LOW must be less than HIGH"),
         ({"normal": {"initial.r": "1,-1"}, "sample": 3}, "not a standard deviation"),

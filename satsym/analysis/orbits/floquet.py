@@ -121,8 +121,8 @@ class Floquet:
             "The block of size 2 means that a neighbouring motion with another energy has another period and "
             "falls behind or gets ahead by the same amount in each revolution. In Lyapunov's sense the orbit "
             "is therefore unstable, although distances grow only along the track and in proportion to time, "
-            "not exponentially as a positive eigenvalue would imply. As a curve, the neighbouring orbit "
-            "remains as near as it was at the beginning: the orbit is orbitally stable."
+            "not exponentially as a positive eigenvalue would imply. As a curve, the neighbouring "
+            "orbit stays as close as it was initially: the orbit is orbitally stable."
         )
 
 

@@ -34,7 +34,7 @@ def valued(formula: Any, instance: str, **more: float) -> float:
     known = _numbers(instance) | more
     letters = {s.name: s for s in formula.free_symbols}
     for name in letters:
-        refuse_unknown("the instance gives no number for", name, known)
+        refuse_unknown("the instance gives no numerical value for", name, known)
     return float(formula.xreplace({s: known[name] for name, s in letters.items()}))
 
 

@@ -257,7 +257,7 @@ class Evaluation:
     def _worked_out(self, node: ast.BinOp, bound: Mapping[str, Any]) -> Any:
         left, right = alike(self._value(node.left, bound), self._value(node.right, bound))
         if isinstance(node.op, ast.Pow) and not (isinstance(right, int | float) and abs(right) <= _MAX_POWER):
-            raise BadInput(f"{_text(node)}: an exponent must be a number and at most {_MAX_POWER}")
+            raise BadInput(f"{_text(node)}: exponents must be numbers of magnitude at most {_MAX_POWER}")
         try:
             if isinstance(node.op, ast.Pow) and isinstance(left, np.ndarray) and left.ndim > 1:
                 return np.linalg.matrix_power(left, right)

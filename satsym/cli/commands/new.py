@@ -98,7 +98,8 @@ def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str,
     if original not in files.shipped():
         files.locate(original)
         raise BadInput(
-            f"--instance: {shown(original)} is a path; name a shipped instance (`satsym instances` lists them)"
+            f"--instance: {shown(original)} is a path; give the name of a shipped instance (`satsym instances` lists "
+            "them)"
         )
     source = files.locate(original)
     path = folder / f"{name}.toml"

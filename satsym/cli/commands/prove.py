@@ -20,7 +20,7 @@ Examples:
   satsym prove soft-return --latex soft-return.tex
 
 Exit codes: 0 proved, 3 the instance cannot be used, 4 the problem has a feature that no theorem used here covers
-(the message names it), 5 not proved (the message names the step that fails)."""
+(the message states it), 5 not proved (the message states the step that fails)."""
 
 
 @command(epilog=EXAMPLES)

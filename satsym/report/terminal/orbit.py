@@ -100,7 +100,7 @@ def _point(found: Point, length: str, time: str) -> list[str]:
     pairs = zip(found.eigenvalues.tolist(), found.closed_form.tolist(), strict=True)
     unit = _per("1", time)
     rows = [(_rounded(value, found.deviation), complex_number(exact), unit) for value, exact in pairs]
-    rule = 'rule of the signs, "stable if all(e.real <= 0)": <verdict>; "if all are negative": <other>'
+    rule = 'sign rule, "stable if all(e.real <= 0)": <verdict>; "if all are negative": <other>'
     verdict, other = message(found.rule_verdict), message(found.conclusion_verdict or "undecided")
     own = []
     if found.own is not None:

@@ -195,7 +195,7 @@ class ClosedLoop(Statement):
         )
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
-        """Return the law, which is stated by states and gains."""
+        """Return the law, which is a function of states and gains."""
         known = set(symbols_of((*self.states, *self.parameters, *self.gains)))
         yield "the law", [self.law], known | {cn.s, cn.COMMAND}
 

@@ -44,7 +44,7 @@ class FirstOrder(Model):
             yield f"give one rate for each state; {odd or 'take the symbols from symbols_of'}"
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
-        """Return the rates, which are stated by states and controls."""
+        """Return the rates, which are functions of states and controls."""
         for state, rate in self.rates.items():
             yield f"the rate of {state}", [rate], _declared(self)
 

@@ -284,9 +284,11 @@ def refuse_mixtures(so_far: Derivation) -> None:
     controls, what = symbols_of(problem.model.controls), f"{problem.name}: path_constraints"
     held = [name for name, g in problem.path_constraints.items() if sp.sympify(g).free_symbols & set(controls)]
     if held:
-        message = f"{what} {held[0]}: H is linear in the controls, so a constraint that contains a control "
+        place = f"{what} {held[0]}"
         raise DerivationError(
-            f"{message}is not derived; write the constraint as a bound on that control", ("path_constraints",)
+            f"{place}: H is linear in the controls, so a constraint that contains a control is not derived; "
+            "write the constraint as a bound on that control",
+            ("path_constraints",),
         )
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
