@@ -57,7 +57,7 @@ class Variable:
     default
         Value that is used if an instance gives none (parameters only).
     kind
-        ``"real"``, or ``"angle"`` if values that differ by a full turn mean the same.
+        ``"real"``, or ``"angle"`` if values that differ by a full turn are equivalent.
     positive
         Whether only positive values have a meaning; for a state, this defines its domain.
     typical

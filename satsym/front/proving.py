@@ -76,7 +76,7 @@ def prove(instance: Instance | str | Path, digits: int = 20, **options: Any) -> 
     Raises
     ------
     BadInput
-        If the instance cannot be used, with one line that says what, where and what to do.
+        If the instance cannot be used, with a one-line message that says what is wrong, where, and what to do.
 
     Examples
     --------

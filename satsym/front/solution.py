@@ -145,7 +145,7 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
     Raises
     ------
     BadInput
-        If the instance cannot be used, with one line that says what, where and what to do.
+        If the instance cannot be used, with a one-line message that says what is wrong, where, and what to do.
 
     Examples
     --------

@@ -119,7 +119,7 @@ def study(
     Raises
     ------
     BadInput
-        If the study cannot be carried out, with one line that says what, where and what to do.
+        If the study cannot be carried out, with a one-line message that says what is wrong, where, and what to do.
 
     Examples
     --------

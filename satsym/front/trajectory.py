@@ -104,8 +104,8 @@ def export(result: Solution | Trajectory, kind: str, path: str | Path | None = N
     Raises
     ------
     BadInput
-        If the instance has no usable table [orbit], or if the library that writes the format is not installed, with one
-        line that says what, where and what to do.
+        If the instance has no usable table [orbit], or if the library that writes the format is not installed, with a
+        one-line message that says what is wrong, where, and what to do.
 
     Examples
     --------

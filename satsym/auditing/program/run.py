@@ -292,7 +292,7 @@ class _Walker:
             raise OverBudget(f"the program takes more than {MAX_STEPS:,} steps")
 
     def _refused(self, found: ast.AST) -> BadInput:
-        return BadInput(f"{type(found).__name__} is not known here, or not of these values")
+        return BadInput(f"{type(found).__name__} is not supported here, or not for these values")
 
 
 _READERS: Mapping[type[ast.expr], Callable[[_Walker, Any, Mapping[str, Any]], Any]] = {
