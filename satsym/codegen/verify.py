@@ -376,7 +376,7 @@ def _same_loops(
                 break
     else:
         raise DerivationError(
-            f"{derivation.name}: no integration step is possible at random points, even a very short one; {LIE}"
+            f"{derivation.name}: no integration step, however short, is possible at random points; {LIE}"
         )
     for name, sides in loops(kernels.spec, text, place, (times, u, u_mid)).items():
         _refuse(derivation.name, name, disagreement(sides))

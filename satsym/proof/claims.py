@@ -70,8 +70,8 @@ def of_signs(shown: Shown) -> Hypothesis:
     if shown.crossings == 1:
         changes = f"{shown.conditions} signs and 1 change of the control law"
     return Hypothesis(
-        "the law of each arc holds on the whole arc, and the switching function crosses each change of law "
-        "with a nonzero slope",
+        "the law of each arc holds on the whole arc, and the switching function passes through zero with a "
+        "nonzero slope at each change of law",
         "signs of Taylor series on every step, determined by bisection",
         changes,
     )

@@ -31,7 +31,7 @@ MAX_SECONDS = 900.0
 
 @command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
-@place_option("--out", metavar="DIR", help="Write into this folder instead of generated/ in the checkout.")
+@place_option("--out", metavar="DIR", help="Write to this folder instead of generated/ in the checkout.")
 @click.option(
     "--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything would change."
 )
@@ -42,7 +42,7 @@ MAX_SECONDS = 900.0
     metavar="S",
     default=MAX_SECONDS,
     show_default=True,
-    help="Longest time, in seconds, that deriving one problem may take.",
+    help="Time limit for the derivation of each problem, in seconds.",
 )
 def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, max_seconds: float) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.

@@ -34,7 +34,7 @@ _FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
 @place_option(
     "--out",
     metavar="DIR",
-    help="Write into this folder; by default a model goes into NAME/ and an instance into the current folder.",
+    help="Write to this folder; by default a model goes into NAME/ and an instance into the current folder.",
 )
 def new(name: str, original: str | None, out: Path | None) -> ExitCode:
     """Start a new model, or copy a shipped instance.
