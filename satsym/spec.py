@@ -59,7 +59,7 @@ class Variable:
     kind
         ``"real"``, or ``"angle"`` if values that differ by a full turn are equivalent.
     positive
-        Whether only positive values have a meaning; for a state, this defines its domain.
+        Whether only positive values are meaningful; for a state, this defines its domain.
     typical
         Lower and upper end of the range of usual values, in the unit of the quantity. Random points for checks are
         drawn from this range; without it, they are of order one, where roots and steep functions may not be defined.

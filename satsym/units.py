@@ -68,7 +68,7 @@ def parse_quantity(text: str, unit: str) -> float:
         )
     value = _convert(float(match[1]), given, wanted)
     if not math.isfinite(value):
-        raise BadInput(f'{shown(text)} is out of range in "{unit}"; write a smaller number')
+        raise BadInput(f'{shown(text)} is out of range in "{unit}"; enter a smaller number')
     return value
 
 
@@ -157,7 +157,7 @@ def time_unit(units: Iterable[str]) -> str:
                 found.setdefault(_named(name), name)
     if len(found) > 1:
         several = '" and "'.join(sorted(found.values()))
-        raise BadInput(f'the model measures time in "{several}"; write times as numbers without a unit')
+        raise BadInput(f'the model measures time in "{several}"; give times as plain numbers, without units')
     return next(iter(found.values()), "s")
 
 

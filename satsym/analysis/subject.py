@@ -62,7 +62,7 @@ def examined(given: Instance | Kernels) -> tuple[Analysis | None, Survey | None]
         if spec.keplerian and not spec.has_reference:
             raise BadInput(
                 f"{spec.name}: the model has neither an equilibrium nor a reference, and without an instance "
-                "there is no initial state of an orbit; write an instance with an initial state"
+                "there is no initial state of an orbit; create an instance with an initial state"
             )
         return analyse(given), None
     orbit = survey(given) if spec.keplerian else None

@@ -156,7 +156,7 @@ def _places(
         if len(places) == POINTS:
             return places, expected
     raise DerivationError(
-        f"{derivation.name}: the generated functions have no finite values at random points of order one; {LIE}"
+        f"{derivation.name}: the generated functions are not finite at random points of order one; {LIE}"
     )
 
 

@@ -138,7 +138,7 @@ def measured(text: str, judging: bool, relations: bool = False) -> None:
         text = _QUOTED.sub("''", text)
     foreign = (_FOREIGN_TO_RELATIONS if relations else _FOREIGN).search(text)
     if foreign:
-        raise BadInput(f'the character "{printable(foreign[0])}" has no meaning here (column {foreign.start() + 1})')
+        raise BadInput(f'the character "{printable(foreign[0])}" is not allowed here (column {foreign.start() + 1})')
     depth = 0
     for character in text:
         depth += (character in "([") - (character in ")]")

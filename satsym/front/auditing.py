@@ -28,7 +28,7 @@ class Audit:
     Attributes
     ----------
     ledgers
-        The ledgers of the documents. A ledger lists the claims that a document makes.
+        The ledgers of the documents. A ledger lists the claims made in a document.
     judged
         Key of a document -> its judged rows.
     """
@@ -200,7 +200,7 @@ def check(formula: str, model: str, let: str | Sequence[str] | Mapping[str, str]
     Raises
     ------
     BadInput
-        If the formula cannot be read (the message names the position), or if there is no such model or name.
+        If the formula cannot be parsed (the message gives the position), or if there is no such model or name.
     """
     told = [f"{printed}={ours}" for printed, ours in let.items()] if isinstance(let, Mapping) else let
     found = check_in(formula, model, Path(), [told] if isinstance(told, str) else list(told), free)

@@ -72,5 +72,5 @@ def varied(
         for one in found:
             case = one.at(case, share)
         if case.tf is not None and not case.tf > case.t0:
-            raise BadInput(f"[continuation]: tf = {case.tf:g} is not after t0 = {case.t0:g}; write later times")
+            raise BadInput(f"[continuation]: tf = {case.tf:g} is not after t0 = {case.t0:g}; enter later times")
     return tuple(found)

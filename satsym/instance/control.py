@@ -112,7 +112,7 @@ def _norm(value: Any, unit: str, key: str) -> float:
         raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
     number = quantity(value, unit, key)
     if number <= 0:
-        raise BadInput(f"{key}: a bound of {shown(value)} admits no control; write a positive number")
+        raise BadInput(f"{key}: a bound of {shown(value)} admits no control; enter a positive number")
     return number
 
 

@@ -97,7 +97,7 @@ def finite(tree: dict[str, Any]) -> dict[str, Any]:
     """
     for key, value in _leaves(tree):
         if not _finite(value):
-            raise BadInput(f"{key}: the number is {_excess(value)}; write a finite number")
+            raise BadInput(f"{key}: the number is {_excess(value)}; enter a finite number")
     return tree
 
 
@@ -112,7 +112,7 @@ def _parse(text: str) -> dict[str, Any]:
         # Python reads no int of more than 4300 digits; one of a few hundred is too large as well, but has a key
         shorter = _MANY_DIGITS.sub("9" * 400, text)
         if shorter == text:
-            raise BadInput("a number is out of range; write numbers with fewer digits") from None
+            raise BadInput("a number is out of range; enter numbers with fewer digits") from None
     return _parse(shorter)
 
 
@@ -144,7 +144,7 @@ def text(path: Path) -> str:
         if path.suffix == ".py" and path.is_file():
             raise BadInput(
                 "is a Python file, but a TOML file is needed; derive a model with `satsym derive FILE --out "
-                'DIR`, then write an instance of the model that begins with model = "DIR/NAME"'
+                'DIR`, then create an instance of the model that begins with model = "DIR/NAME"'
             )
         if path.is_dir():
             raise BadInput("is a directory; give the path of a TOML file")

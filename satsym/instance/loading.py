@@ -173,7 +173,7 @@ def _refuse_beside_limits(instance: Instance) -> None:
             key = instance.free[0].key
             raise BadInput(
                 f'{key}: "{resolve.FREE}" cannot be combined with limits on the final state or time ({name}); '
-                "write a number"
+                "enter a number"
             )
         if instance.continuation:
             raise BadInput(
@@ -207,7 +207,7 @@ def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptio
     differentiator = time(table.differentiator, "[classical] differentiator", spec)
     if differentiator < 0.0:
         raise BadInput(
-            f"[classical] differentiator: {shown(table.differentiator)} is negative; write a time constant, or "
+            f"[classical] differentiator: {shown(table.differentiator)} is negative; enter a time constant, or "
             "0 for an ideal differentiator"
         )
     if table.gains is not None and min(table.gains) <= 0.0:

@@ -44,7 +44,7 @@ Variations = dict[str, Spread]
 Flag = Annotated[bool, Meta(description="true or false")]
 Gains = Annotated[
     tuple[float, float],
-    Meta(description="two numbers, the gains of the rate and of the angle, such as [13.56, 0.0678]"),
+    Meta(description="two numbers, the gains on the rate and on the angle, such as [13.56, 0.0678]"),
 ]
 
 
@@ -131,7 +131,7 @@ class ClassicalTable(_Table, frozen=True):
     follows: Annotated[Name, Key("the state that follows the command", _LAW)]
     command: Annotated[Quantity, Key("commanded value after t0", _LAW, "the model's")]
     damping: Annotated[Quantity | None, Key("damping parameter d; both poles are at -d", _LAW, "1/time")] = None
-    gains: Annotated[Gains | None, Key("gains of the rate and of the state, in place of damping", _LAW, "1")] = None
+    gains: Annotated[Gains | None, Key("gains on the rate and on the state, in place of damping", _LAW, "1")] = None
     differentiator: Annotated[
         Quantity, Key("time constant of the differentiator that measures the rate", _LAW, "time")
     ] = 0.0

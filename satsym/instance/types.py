@@ -247,7 +247,7 @@ class Instance:
         """
         if self.free:
             raise BadInput(
-                f'{self.called}: {self.free[0].key}: the value of "free" is found only by solving; write a number'
+                f'{self.called}: {self.free[0].key}: the value of "free" is found only by solving; enter a number'
             )
 
     @property

@@ -136,7 +136,7 @@ def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
     key, given = f"[lqr.allowed] {variable.symbol}", allowed[variable.symbol]
     deviation = quantity(given, variable.unit, key)
     if not 1e-100 < deviation < 1e100:
-        raise BadInput(f"{key}: an allowed deviation must be positive, not {shown(given)}; write a positive number")
+        raise BadInput(f"{key}: an allowed deviation must be positive, not {shown(given)}; enter a positive number")
     return 1.0 / deviation**2
 
 
@@ -146,7 +146,8 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
     diagonal = [row for row in rows if not isinstance(row, Sequence)]
     if len(rows) != size or len(diagonal) not in (0, size):
         raise BadInput(
-            f"[lqr] {name}: the number {len(rows)} of entries is wrong, or numbers and rows are mixed; {wanted}"
+            f"[lqr] {name}: the number of entries ({len(rows)}) is wrong, or single numbers are mixed with rows; "
+            f"{wanted}"
         )
     if diagonal:
         return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))

@@ -106,7 +106,10 @@ def _along(n: int, segment: Segment, w: Matrix, sizes: Sequence[float], time: Ba
 
 
 def _widths(w: Matrix, sizes: Sequence[float]) -> list[float]:
-    """Return the width of a field in each state, where its value changes by one, up to a multiple of the sizes."""
+    """Return, for each state, how far it is displaced for the value function of the field to change by about one.
+
+    A displacement is at most a fixed multiple of the size of its state.
+    """
     entries = [abs(float(w[i, i].mid())) for i in range(w.nrows())]
     largest = max((e * s * s for e, s in zip(entries, sizes, strict=True)), default=0.0)
     return [max(e, 1e-9 * largest / (s * s), 1e-300) ** -0.5 for e, s in zip(entries, sizes, strict=True)]

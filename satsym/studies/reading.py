@@ -116,7 +116,7 @@ def _number(text: str, key: Key) -> float | str:
     except ValueError:
         return text.strip()
     if number - number != 0.0:
-        raise BadInput(f"{key.text}: {shown(text)} is not finite; write a finite number")
+        raise BadInput(f"{key.text}: {shown(text)} is not finite; enter a finite number")
     return number
 
 
@@ -127,7 +127,7 @@ def _count(text: str, place: str) -> int:
         count = 0
     if not 1 <= count <= MOST_ROWS:
         raise BadInput(
-            f"{place}: the number of values must be a positive integer, not {shown(text)}; write a whole "
+            f"{place}: the number of values must be a positive integer, not {shown(text)}; enter a whole "
             f"number between 1 and {MOST_ROWS}"
         )
     return count

@@ -100,8 +100,8 @@ def _refuse_constraints(problem: Problem) -> None:
         raise DerivationError(f"{what}: {message}", ("path_constraints",))
     if any(part.kind in ("ball", "annulus") for part in parts):
         message = (
-            "they are not derived together with an angle, or with control bounds other than those of a box; "
-            "leave out the control set or the constraints"
+            "bounds on the norm of controls are not supported together with path constraints; use a box or an angle, "
+            "or leave out the path constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
 
@@ -117,13 +117,13 @@ def _refuse_interior(problem: Problem) -> None:
         if not is_name(name) or "__" in name:
             raise DerivationError(f"{what}: got {shown(name)}; the name of a point must be {NAMES}", ("interior",))
         if len(conditions) > len(problem.model.states):
-            message = f"{name} has more conditions than there are states; state fewer"
+            message = f"{name} has more conditions than there are states; give fewer"
             raise DerivationError(f"{what}: {message}", ("interior",))
     beside = [("path_constraints", bool(problem.path_constraints)), ("control_sets", bool(problem.control_sets))]
     beside += [(f'control_set "{problem.control_set}"', problem.control_set == "ball")]
     for other, there in beside if stated else ():
         if there:
-            message = f"beside {other} they are not derived; leave one of the two out"
+            message = f"waypoints are not supported together with {other}; leave out one of the two"
             raise DerivationError(f"{what}: {message}", ("interior", other))
 
 

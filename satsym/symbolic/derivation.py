@@ -187,7 +187,7 @@ class Derivation:
                 failed = f"{self.name}:{step.name} failed its check {check.claim!r}: "
                 if check.error != check.error:
                     raise DerivationError(
-                        f"{failed}the expressions have no finite values at random points of order one, so they "
+                        f"{failed}the expressions are not finite at random points of order one, so they "
                         "could not be compared; give the ranges of the variables: Variable(..., typical=(low, "
                         "high))"
                     )

@@ -293,7 +293,7 @@ class Problem:
     terminal_cost
         Function S(x, t, p), evaluated at the final time (Mayer term).
     terminal_constraints
-        Expressions psi(x, t, p) that vanish at the final time.
+        Expressions psi(x, t, p) that must vanish at the final time.
     terminal_inequalities
         Expressions psi(x, t, p) by name, none of which may be positive at the final time: ``{"above": r_min - r}``.
     path_constraints
@@ -312,7 +312,7 @@ class Problem:
         are the same in both; the costates differ in sign, and kernels always use those of the minimum convention.
     maximise
         Whether the objective, the integral of `running_cost` plus `terminal_cost`, is maximised. The derivation and the
-        kernels minimise its negative, to which the costates belong; reports show the objective.
+        kernels minimise its negative; the costates are those of the negative. Reports show the objective.
     unit
         Unit of the objective, such as ``"km"``; a unit that does not agree with the terms of the objective is rejected.
     """

@@ -223,7 +223,7 @@ STUCK = system([[1.0, 0.0], [0.0, -1.0]], [[0.0], [1.0]])
     ("given_system", "Q", "R", "complaint"),
     [
         (satellite(), [1, 1, -0.1, 1], [1, 1], r"\[lqr\] Q: the cost has no lower bound, because at the frequency 0 "),
-        (LAG, [-1.5], [1], r"\[lqr\] Q: the cost has no lower bound, because at the frequency 0 .* outweigh the cost"),
+        (LAG, [-1.5], [1], r"\[lqr\] Q: the cost has no lower bound, because at the frequency 0 .* exceed the cost"),
         (LAG, [-1.0], [1], r"\[lqr\] Q: the cost has no minimum, because at the frequency 0 .* balance the cost"),
         (satellite(), [[1, 2, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], [1, 1], "Q: not symmetric at row 2"),
         (satellite(), [1, 1, 1, 1], [1, 0], r"\[lqr\] R: not positive definite"),

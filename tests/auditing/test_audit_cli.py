@@ -195,7 +195,7 @@ BAD = {
     "nested brackets, few": (text([row("1", "(" * 1500 + "x1" + ")" * 1500, TANGENTIAL)]), "nested"),
     "nested lists": ("x = " + "[" * 10_000, "nested too deeply"),
     "TeX in a name": (text([GOOD], HEAD + '"\\\\theta" = "theta"\n'), "without TeX"),
-    "TeX in a formula": (text([row("1", "\\\\frac{1}{2}", TANGENTIAL)]), "no meaning"),
+    "TeX in a formula": (text([row("1", "\\\\frac{1}{2}", TANGENTIAL)]), "not allowed here"),
     "circle of scopes": (
         text([GOOD], HEAD + '[scope.a]\nextends = "b"\n[scope.b]\nextends = "a"\n'),
         "refers back to itself",

@@ -182,7 +182,7 @@ def test_pictures_go_where_they_are_asked_for(v_y: str, tmp_path: Path, capsys: 
 def test_a_model_as_such_starts_on_no_orbit(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = analysed("two_body", capsys)
     assert (code, out) == (3, "")
-    assert "write an instance with an initial state" in err
+    assert "create an instance with an initial state" in err
     assert err.count("\n") == 1
 
 

@@ -161,7 +161,7 @@ def test_the_unit_of_time_is_the_one_that_the_variables_use() -> None:
     assert time_unit(["km", "km/s", "rad/s", "1/second**3"]) == "s"
     assert time_unit(["au", "au/day"]) == "day"
     assert time_unit(["1", "1"]) == "s"
-    with pytest.raises(BadInput, match="numbers without a unit"):
+    with pytest.raises(BadInput, match="plain numbers, without units"):
         time_unit(["km/s", "km/hour"])
 
 

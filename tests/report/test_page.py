@@ -108,7 +108,7 @@ def test_a_condition_that_failed_and_one_that_holds_are_told_apart_on_the_page()
     checks = (Check("kernels contradict each other", 1.0, 1e-9), Check("boundary residual", 1e-12, 1e-9))
     found = Certificate(Verdict.FAILED, 0.0, 0.0, 0.0, 0.0, 1.0, None, checks)
     shown = answer.certificate(found, instance.load("soft-return").model.spec, load("en"))
-    assert f"generated kernels do not agree</th>{CELL}1</td>{CELL}1e-09</td><td>FAILED</td>" in shown
+    assert f"generated kernels do not agree with each other</th>{CELL}1</td>{CELL}1e-09</td><td>FAILED</td>" in shown
     assert f"boundary conditions satisfied</th>{CELL}1e-12</td>{CELL}1e-09</td><td></td>" in shown
     assert "elsewhere" not in shown, "said of certified answers only"
 

@@ -89,10 +89,10 @@ def test_nothing_is_translated_that_is_nowhere_said() -> None:
 
 
 MET_AT_NONE = ("no final time after the initial time satisfies", "the given final time <when> does not satisfy")
-WEIGHTS = ("Q: missing; write the weights of the states", "R: missing; write the weights of the inputs")
+WEIGHTS = ("Q: missing; specify the weights of the states", "R: missing; specify the weights of the inputs")
 MISPLACED = (("not after", "a later time"), ("too far from", "a time closer to t0"))
 SIZED = "write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
-MISSHAPEN = ("the number <n> of entries is wrong, or numbers and rows are mixed", "row <i> has <n> numbers")
+MISSHAPEN = ("the number of entries (<n>) is wrong, or single numbers are mixed with rows", "row <i> has <n> numbers")
 UNSUPPORTED = (
     *("", ", an unevaluated derivative", ", which has no closed form", ", an unknown function"),
     *(", a value at another time", ", whose conditions do not cover all times", ", whose derivatives jump"),
@@ -136,7 +136,7 @@ COMPOSED = (
     "<again> = [lower, upper]",
     *(f"<place>: terminal inequality <name>: {when} it" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
-    *(f"[time] <key>: <value> is {why} t0 = <start>; write {what}" for why, what in MISPLACED),
+    *(f"[time] <key>: <value> is {why} t0 = <start>; enter {what}" for why, what in MISPLACED),
     *(
         f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
         for what in MISSHAPEN
@@ -177,7 +177,7 @@ def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None
 
 MADE_OF_PARTS = {
     "<>: there are no results <>in <>; write them with `satsym <> <> --plot`, or give their folder with --from",
-    "[time] <>: <> <> t0 = <>; write <>",
+    "[time] <>: <> <> t0 = <>; enter <>",
 }
 """Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
 
@@ -277,8 +277,8 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
             "k.py:3: write powers with **, as in x**3; ^ is not the power operator in Python",
             "^ bukan pangkat dalam Python",
         ),
-        ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),
-        ('x.toml: [final] r: got "a list of 2"; write a number', 'tertulis "a list of 2"'),
+        ("x.toml: [final] r: got a list of 2; enter a number", "tertulis daftar dengan 2 isian"),
+        ('x.toml: [final] r: got "a list of 2"; enter a number', 'tertulis "a list of 2"'),
         ("l.toml:3: row 1: got a table; write an expression in quotes", "tertulis tabel"),
     ],
 )

@@ -146,7 +146,7 @@ def test_a_condition_that_fails_says_what_is_wrong() -> None:
         Check("kernels contradict each other", 1.0, 1e-9),
     )
     assert statement(held) == "generated kernels agree"
-    assert statement(failed) == "generated kernels do not agree"
+    assert statement(failed) == "generated kernels do not agree with each other"
     assert statement(Check("cheaper by: revolutions", 0.0, 1e-9)) == "no cheaper competitor: revolutions"
     assert statement(Check("cheaper by: revolutions", 1.0, 1e-9)) == "cheaper by: revolutions"
 

@@ -50,7 +50,7 @@ def test_the_largest_objective_is_reported_and_the_costates_are_those_of_its_neg
     assert (said["units"]["objective"], said["units"]["lambda_x"]) == ("m", "1")
     assert found.objective == said["objective"]
     text = repr(found)
-    assert re.search(r"objective J, maximised +1\.166666667 m \(costs and costates belong to -J\)", text)
+    assert re.search(r"objective J, maximised +1\.166666667 m \(costs and costates are those of -J\)", text)
     assert "cost J" not in text
 
 

@@ -161,9 +161,9 @@ def test_the_law_is_typeset_as_a_comparison_of_three_values(side: str, value: st
 @pytest.mark.parametrize(
     ("cost", "more", "message"),
     [
-        (u**2, {}, "supported only if the cost and the motion are linear in the controls"),
+        (u**2, {}, "only if the cost and the motion are linear in the controls"),
         (Integer(1), {"control_set": "free"}, 'this requires control_set = "box"'),
-        (Integer(1), {"path_constraints": {"slow": v - 1}}, "they are not derived together with .u."),
+        (Integer(1), {"path_constraints": {"slow": v - 1}}, "not supported together with .u."),
     ],
 )
 def test_what_has_no_law_is_refused(cost: Expr, more: dict[str, object], message: str):

@@ -194,7 +194,7 @@ def test_a_wrong_multiplier_fails_its_check(wrong: str, monkeypatch: pytest.Monk
         ({"path_constraints": {"mixed": u + v - 1}}, "mixed: H is linear in the controls, so a constraint"),
         (
             {"path_constraints": {"limit": v - 1}, "running_cost": sp.Abs(u)},
-            "they are not derived together with .u.",
+            "not supported together with .u.",
         ),
     ],
 )

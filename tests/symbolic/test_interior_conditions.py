@@ -48,10 +48,10 @@ def test_points_are_typeset(language: str):
 @pytest.mark.parametrize(
     ("problem", "message"),
     [
-        (through(x - 1, path_constraints={"wall": x - 2}), "beside path_constraints"),
-        (through(x - 1, control_set="ball"), 'beside control_set "ball"'),
-        (through(x - 1, control_sets={"all": Ball("u")}), "beside control_sets"),
-        (through(x - 1, control_sets={"all": Angle("u")}), "beside control_sets"),
+        (through(x - 1, path_constraints={"wall": x - 2}), "together with path_constraints"),
+        (through(x - 1, control_set="ball"), 'together with control_set "ball"'),
+        (through(x - 1, control_sets={"all": Ball("u")}), "together with control_sets"),
+        (through(x - 1, control_sets={"all": Angle("u")}), "together with control_sets"),
         (through(x - 1, running_cost=sp.Abs(u), control_set="box"), "where H is quadratic"),
         (through(x - 1, sp.Integer(2)), "mark requires 2 = 0, but this condition does not depend on the motion"),
         (through(x - u), "the interior point mark cannot depend on u"),

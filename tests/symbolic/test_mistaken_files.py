@@ -66,7 +66,7 @@ def complaint(folder: Path, text: str, seconds: float = 20.0) -> str:
         (
             "rates={place: speed}",
             "rates={place: abs(speed)}",
-            "Abs(speed) in the equations of motion is supported only if the cost and the motion are linear",
+            'Abs(speed) in the equations of motion is supported only with control_set = "box", and only if the cost',
         ),
         (
             "terminal_cost=place**2",

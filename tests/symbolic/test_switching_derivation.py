@@ -194,7 +194,10 @@ def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
         (switching({x1: u1}, 1, control_set="free"), 'this requires control_set = "box", not "free"'),
         (switching({x1: u1}, -sp.Abs(u1)), "the weight of |u1| in the cost, -1, might be negative"),
         (switching({x1: u1}, x1 * sp.Abs(u1)), "the weight of |u1| in the cost, x1, might be negative"),
-        (switching({x1: -sp.Abs(u1)}, u1**2), "Abs(u1) in the equations of motion is supported only if the cost and"),
+        (
+            switching({x1: -sp.Abs(u1)}, u1**2),
+            'Abs(u1) in the equations of motion is supported only with control_set = "box", and only if the cost and',
+        ),
         (switching({x1: sp.Abs(x2), x2: u1}, 1), "the rate of x1 contains Abs(x2), whose derivatives jump"),
         (switching({x1: sp.sign(x2), x2: u1}, 1), "the rate of x1 contains sign(x2), whose derivatives jump"),
         (switching({x1: u1}, sp.Abs(u1) + sp.Max(x1, 0)), "the running cost contains Max(0, x1)"),

@@ -215,7 +215,7 @@ def _defaults(model: Kernels) -> tuple[float, ...]:
     missing = [v.symbol for v in model.spec.parameters if v.default is None]
     if missing:
         raise BadInput(
-            f"{model.spec.name}: {', '.join(missing)} has no default; write an instance that gives a value, "
+            f"{model.spec.name}: {', '.join(missing)} has no default; create an instance that sets this value, "
             "and use that instance in place of the model"
         )
     return tuple(float(v.default) for v in model.spec.parameters if v.default is not None)
@@ -236,6 +236,6 @@ def jacobians(model: Kernels, p: Sequence[float], t: float, x: Array) -> tuple[A
     except ArithmeticError:
         raise BadInput(
             f"{model.spec.name}: cannot be linearised at t = {t:.6g}, because of a division by zero; "
-            "write an instance with another t0"
+            "create an instance with another t0"
         ) from None
     return np.array(A, dtype=float).reshape(n, n), np.array(B, dtype=float).reshape(n, m)

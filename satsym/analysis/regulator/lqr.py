@@ -130,7 +130,7 @@ def lqr(
         except NoLowerBound:
             raise BadInput(
                 "[lqr] horizon: over so long a horizon the cost has no lower bound, because the negative "
-                "weights outweigh the cost of the inputs; shorten the horizon, or write larger weights"
+                "weights exceed the cost of the inputs; shorten the horizon, or use larger weights"
             ) from None
         P, rate = run.T, run.E.T @ weight @ run.E
         eigenvalues = np.linalg.eigvals(A - G @ P).astype(complex)
@@ -249,11 +249,11 @@ def _at_a_frequency(A: Array, B: Array, Q: Array, R: Array) -> str:
     if least < -NOTHING:
         return (
             f"[lqr] Q: the cost has no lower bound, because at the frequency {worst:.6g} the negative weights "
-            "outweigh the cost of the inputs; write larger weights"
+            "exceed the cost of the inputs; use larger weights"
         )
     return (
         f"[lqr] Q: the cost has no minimum, because at the frequency {worst:.6g} the negative weights balance "
-        "the cost of the inputs; write larger weights"
+        "the cost of the inputs; use larger weights"
     )
 
 

@@ -152,7 +152,7 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
     if not found.positive:
         raise BadInput(
             "a region of attraction is measured by the cost to go x'Px, which is not positive with these weights; "
-            "write a positive definite [lqr] Q"
+            "use a positive definite [lqr] Q"
         )
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())

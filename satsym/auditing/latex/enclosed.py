@@ -27,7 +27,7 @@ class EnclosedCursor(RefusalCursor):
             line = relation_in(part)
             sides = [self._inner(side, at) for side in line.sides]
             if line.signs not in ([], ["="]):
-                raise Unread("this point of evaluation is not supported", at)
+                raise Unread("this evaluation point is not supported", at)
             places.append(sides[0] if line.bare else Call("equal", tuple(sides)))
         return Call("value", (base, *places))
 

@@ -246,12 +246,12 @@ class Parser(SumCursor):
                 self._i += 2
                 base = self._taken(base, self._script(), bar.at)
                 if self._is("^"):
-                    raise Unread("this point of evaluation is not supported", bar.at)
+                    raise Unread("this evaluation point is not supported", bar.at)
             elif self._is("_") and not isinstance(base, Num):
                 at = self._take().at
                 base = Call("indexed", (base, self._indices_of(self._script(), at)))
             elif self._is("'") and not isinstance(base, Num):
-                raise Unread("a prime has no meaning here", self._take().at)
+                raise Unread("a prime is not allowed here", self._take().at)
             elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
                 self._i += 1
                 base = Num(Fraction(factorial(int(base.value))))

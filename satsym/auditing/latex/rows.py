@@ -265,7 +265,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         if _has_relation(part):
             first = next(name for token in part if (name := _sign(token)))
             if pending and first == "=":
-                raise Unread("a comma has no meaning here", _between(found, kept))
+                raise Unread("a comma is not allowed here", _between(found, kept))
             done.append([*pending, *part])
             pending = []
         elif done and _goes_on_as_list(done[-1], kept[place:]):
@@ -275,7 +275,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         elif any(_has_relation(later) for later in kept[place:]):
             pending += [*part, Token("sign", ",", part[-1].at)]
         else:
-            raise Unread("a comma has no meaning here", _between(found, kept))
+            raise Unread("a comma is not allowed here", _between(found, kept))
     return done
 
 

@@ -22,7 +22,7 @@ KINDS = ("oem", "czml", "stk", "csv")
 
 EXAMPLES = """\b
 Examples:
-  satsym export return-to-geo --format oem > geo.oem    an orbit ephemeris message of CCSDS, with its manoeuvres
+  satsym export return-to-geo --format oem > geo.oem    a CCSDS Orbit Ephemeris Message, including manoeuvres
   satsym export return-to-geo --format czml --out geo.czml    for viewing in Cesium
   satsym export molniya --format stk --out molniya.e    an uncontrolled motion, for STK
   satsym export return-to-geo --format csv --from results/return-to-geo/solve    of a saved result"""
@@ -39,9 +39,9 @@ Examples:
 def export(subject: str, kind: str, out: Path | None, source: Path | None, values: tuple[str, ...]) -> ExitCode:
     """Write a motion about a central body for other programs.
 
-    X is an instance as for `satsym solve`, with a table [orbit] that gives the date of the motion and the orientation
-    of its plane in space. The instance is solved; if its model has no cost, the uncontrolled motion is simulated.
-    Formats are oem (CCSDS Orbit Ephemeris Message), czml (Cesium), stk (STK ephemeris) and csv.
+    X is an instance, specified as for `satsym solve`, with a table [orbit] that gives the date of the motion and the
+    orientation of its plane in space. The instance is solved; if its model has no cost, the uncontrolled motion is
+    simulated. Formats are oem (CCSDS Orbit Ephemeris Message), czml (Cesium), stk (STK ephemeris) and csv.
     """
     from satsym import instance
     from satsym.instance.numbers import changed

@@ -15,7 +15,7 @@ Examples:
   satsym instances --long               with model, boundary type, final time and bounds
   satsym instances soft-return          the instance file itself
   satsym instances --keys               every key of an instance file, with unit, default and meaning
-  satsym instances --schema             the same as JSON Schema, for editors
+  satsym instances --schema             the same, as a JSON Schema for use in editors
 
 Boundary types: 1 final time and final state given; 2 final time free; 3 final state free, wholly or in part;
 4 final time free and final state on the reference; 5 both free."""
@@ -24,7 +24,7 @@ Boundary types: 1 final time and final state given; 2 final time free; 3 final s
 @command(epilog=EXAMPLES)
 @click.argument("name", metavar="[X]", required=False)
 @click.option("--keys", is_flag=True, help="List every key of an instance file.")
-@click.option("--schema", is_flag=True, help="Print the keys as JSON Schema.")
+@click.option("--schema", is_flag=True, help="Print the keys as a JSON Schema.")
 @long_option
 @json_option
 def instances(name: str | None, keys: bool, schema: bool, whole: bool, as_json: bool) -> ExitCode:

@@ -14,7 +14,7 @@ from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
 Examples:
-  satsym read paper.tex --model hill        drafts paper.ledger.toml beside the paper
+  satsym read paper.tex --model hill        drafts paper.ledger.toml in the same directory as the paper
   satsym read paper.tex                     the same again: confirmed rows are kept
   satsym read notes.md --model DIR/sled --out notes.toml
   satsym audit paper.ledger.toml            checks the document"""

@@ -52,8 +52,8 @@ def report(
 ) -> ExitCode:
     """Solve an instance, and show everything on one page.
 
-    X is an instance as for `satsym solve`. The page contains the problem, the solution, its certificate, the motion,
-    pictures and the derivation, and loads nothing from elsewhere. FILE.py is Python and is executed. With
+    X is an instance, specified as for `satsym solve`. The page contains the problem, the solution, its certificate,
+    the motion, pictures and the derivation, and loads nothing from elsewhere. FILE.py is Python and is executed. With
     --interactive, the page also contains scripts; a browser without scripts still shows everything else. The study in
     DIR must have been made with --trajectories.
     """

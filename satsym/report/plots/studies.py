@@ -196,7 +196,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
         said = numbers_said(display.number(float(one), 4) for one in (low, middle, high))
-        title = say("quantiles 5, 50 and 95 %: <values>", values=said)
+        title = say("5 %, 50 % and 95 % quantiles: <values>", values=said)
         beyond = np.setdiff1d(finite, shown)
         if len(beyond):
             low, high = (decimal(display.number(float(one), 4)) for one in (beyond[0], beyond[-1]))

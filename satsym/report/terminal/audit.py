@@ -228,7 +228,7 @@ def _pieces(word: str, room: int) -> list[str]:
 
 
 def checked_text(answers: Sequence[Answer]) -> str:
-    """Return a line on how unclear letters were understood, and one for each equation."""
+    """Return a line on how unclear letters were interpreted, and one for each equation."""
     understood = dict.fromkeys(filter(None, map(_understood, answers)))
     return "\n".join([*understood, *map(_line, answers)])
 

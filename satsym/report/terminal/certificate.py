@@ -87,7 +87,7 @@ _FAILS = {
     "gaps where the integration restarts": "trajectory not continuous where integration restarts",
     "hamiltonian drift": "Hamiltonian not constant",
     "junction defect": "arcs joined with gaps",
-    "kernels contradict each other": "generated kernels do not agree",
+    "kernels contradict each other": "generated kernels do not agree with each other",
     "a terminal limit is violated": "terminal limits violated",
     "the two minimisers of H are still equally good after a jump": (
         "the minimisers of H on both sides of a jump are equally good"

@@ -17,7 +17,7 @@ HEAD = """# Instance files
 An instance is one case of a model, in TOML. `satsym instances` lists those that come with satsym,
 `satsym instances soft-return` shows one, `satsym new my_case --instance soft-return` copies one to start from.
 `satsym instances --keys` prints this page. Editors that support TOML can complete and check an instance file:
-write the keys as JSON Schema, `satsym instances --schema > instance.schema.json`, and begin the file with the line
+write the keys as a JSON Schema, `satsym instances --schema > instance.schema.json`, and begin the file with the line
 `#:schema instance.schema.json`.
 
 `model`, `[initial]` and `[time] tf` are all that solving needs. Names in capitals stand for those of the model, which

@@ -166,7 +166,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
     ]
     says = say(
         "These are Hill's equations (model hill) about the circular orbit with this semi-major axis. In these "
-        "axes a circular orbit is an equilibrium, so the eigenvalues have a meaning: oscillations once per "
+        "axes a circular orbit is an equilibrium, so the eigenvalues are meaningful: oscillations once per "
         "revolution, in the plane and out of it, and a drift along the track from the block of size 2. Over "
         "one revolution, each eigenvalue s gives exp(s T) = 1: these are the multipliers above. Terms of the "
         "order of the eccentricity are neglected."

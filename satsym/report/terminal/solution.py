@@ -126,7 +126,7 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     unit = "" if spec.objective_unit == "1" else spec.objective_unit
     text = f"{figure(spec.objective(cost), 10)} {unit}".rstrip()
     return (
-        (say("objective J, maximised"), say("<value> (costs and costates belong to -J)", value=text))
+        (say("objective J, maximised"), say("<value> (costs and costates are those of -J)", value=text))
         if spec.maximise
         else (say("cost J"), text)
     )

@@ -143,9 +143,10 @@ def _angles(frames: Array) -> Array:
 
 
 def _turned(before: Array, after: Array, onwards: Array | float = HALF) -> Array:
-    """Return the number of phases that complete a turn while the sum of phases modulo a turn changes as given, (M,).
+    """Return how many phases complete a full turn in each step, shape (M,).
 
-    The sum changes by less than a turn, of which at most the fraction ``onwards`` is in the positive direction.
+    ``before`` and ``after`` are the sums of the phases modulo a turn at both ends of each step, shape (M,). In a step,
+    the true sum changes by less than a turn, of which at most the fraction ``onwards`` is in the positive direction.
     """
     found: Array = np.ceil((before - after) / TURN - (1.0 - onwards))
     return found

@@ -91,7 +91,7 @@ class AboutRest(SpecialCase):
             require(f"the rate of {coordinate.name}", velocity, over(known[coordinate.name], known[n.TIME.name]))
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State which bodies move, and about which rest their equations are linearised."""
+        """Return the paragraph that names the bodies, and the rest about which their equations are linearised."""
         about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.of.reference.items())
         return (Paragraph("about_rest", self.of, tuple(about)),)
 

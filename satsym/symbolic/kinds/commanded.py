@@ -35,7 +35,7 @@ class Statement(Derived):
     damping
         Parameter: the negative of the double pole.
     where
-        Parameters that have special values in the closed forms of the answer to a step.
+        Parameters that have special values in the closed forms of the step response.
     """
 
     follows: sp.Symbol

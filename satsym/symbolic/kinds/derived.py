@@ -46,7 +46,7 @@ class Derived(Model):
             known[n.rate_of(state).name] = over(known[state.name], second)
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State which model's motion this one is derived from."""
+        """Return the paragraph that names the model from whose motion this one is derived."""
         return (Paragraph("motion_of", of=self.of),)
 
 

@@ -53,7 +53,7 @@ class FirstOrder(Model):
         return list(self.rates.values())
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
-        """Check that rates have the dimensions of their states over time; no new symbols are entered."""
+        """Check that each rate has the dimension of its state divided by time; no new symbols are added."""
         for state, rate in self.rates.items():
             require(f"the rate of {state.name}", rate, known[n.rate_of(state).name])
 

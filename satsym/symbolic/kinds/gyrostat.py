@@ -128,7 +128,7 @@ class Gyrostat(Model):
             require(f"the quantity {output.variable.symbol}", output.value, known[output.variable.symbol])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State the bodies that turn about the axis, and the torques on them."""
+        """Return the paragraph that gives the bodies turning about the axis, and the torques on them."""
         bodies, torques = [], []
         for name, (inertia, spin) in self.bodies.items():
             bodies.append(Line("bodies", "I", inertia, f"inertia.{name}", name))

@@ -117,7 +117,7 @@ class Linearised(Derived):
             require(f"the deviation {symbol.name}", deviation, known[symbol.name])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State the reference that the motion is linearised about."""
+        """Return the paragraph that gives the reference about which the motion is linearised."""
         about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.about.items())
         return (Paragraph("linearised", self.of, tuple(about)),)
 

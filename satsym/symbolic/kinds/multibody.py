@@ -93,7 +93,7 @@ class Multibody(Bodies):
             known[n.solved(speed).name] = over(known[speed.name], known[n.TIME.name])
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State the angular velocity and the inertia matrix of each body, along the axes of its inertia."""
+        """Return the paragraph that gives angular velocity and inertia matrix of each body, along its inertia axes."""
         lines = []
         for body in self.bodies:
             inertia = body.central_inertia.to_matrix(axes_of(body)).applyfunc(self.static)

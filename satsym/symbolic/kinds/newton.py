@@ -129,7 +129,7 @@ class Newton(Particle):
         return geometry.motion(self, self.directions)
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """State the vectors along inertial axes."""
+        """Return the paragraph that gives directions, position and forces along inertial axes."""
         lines = [Line("directions", sp.Symbol(name), vector) for name, vector in self.directions.items()]
         lines.append(Line("position", n.POSITION, self.position))
         lines += [Line("forces", n.FORCE, vector, index=name) for name, vector in self.forces.items()]

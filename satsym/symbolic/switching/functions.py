@@ -75,8 +75,8 @@ def refuse_magnitudes(so_far: Derivation) -> None:
     stated = (a for a in magnitudes if isinstance(a, sp.Abs))  # that of a positive control is the control itself
     if magnitude := next((a for a in stated if any(rate.has(a) for rate in rates)), None):
         raise DerivationError(
-            f"{so_far.name}: {magnitude} in the equations of motion is supported only if the cost and the "
-            'motion are linear in the controls and their magnitudes and control_set = "box"; use two controls, '
+            f'{so_far.name}: {magnitude} in the equations of motion is supported only with control_set = "box", and '
+            "only if the cost and the motion are linear in the controls and their magnitudes; use two controls, "
             "one for each sign, both with the lower bound 0; replace the control by their difference and its "
             "magnitude by their sum"
         )
@@ -313,7 +313,7 @@ def _refuse(name: str, problem: Problem, controls: Sequence[sp.Symbol], f: Seque
         if not weight.is_nonnegative:
             raise DerivationError(
                 f"{name}: the weight of |{u.name}| in the cost, {weight}, might be negative, but negative "
-                "weights are not supported; declare the factors of the weight positive"
+                "weights are not supported; declare the factors of the weight to be positive"
             )
         if weight == 0 and all(vanishes(sp.diff(e, u)) for e in (cost, *f)):
             raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")

@@ -292,5 +292,8 @@ def refuse_mixtures(so_far: Derivation) -> None:
         )
     stated = sp.Tuple(problem.running_cost, *so_far.rhs("first_order"))
     if problem.path_constraints and any(stated.has(a) for a in s.magnitudes(controls)):
-        message = "they are not derived together with |u|; use two controls, one for each sign, with the lower bound 0"
+        message = (
+            "path constraints are not supported together with |u|; use two controls, one for each sign, with the lower "
+            "bound 0"
+        )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "running_cost"))
