@@ -277,8 +277,8 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
             "k.py:3: write powers with **, as in x**3; ^ is not the power operator in Python",
             "^ bukan pangkat dalam Python",
         ),
-        ("x.toml: [final] r: got a list of 2; enter a number", "tertulis daftar dengan 2 isian"),
-        ('x.toml: [final] r: got "a list of 2"; enter a number', 'tertulis "a list of 2"'),
+        ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),
+        ('x.toml: [final] r: got "a list of 2"; write a number', 'tertulis "a list of 2"'),
         ("l.toml:3: row 1: got a table; write an expression in quotes", "tertulis tabel"),
     ],
 )

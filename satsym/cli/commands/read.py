@@ -30,7 +30,7 @@ Examples:
     shell_complete=names.completed(names.models),
 )
 @click.option("--let", metavar="LETTER=NAME", multiple=True, help="What a printed letter means; may be repeated.")
-@place_option("--out", metavar="LEDGER", help="Write the ledger to this file instead of beside the document.")
+@place_option("--out", metavar="LEDGER", help="Write the ledger to this file, not to the directory of the document.")
 @json_option
 def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
     """Draft a ledger of a document. The ledger lists the displayed formulas, and what each is to be checked against.
