@@ -24,7 +24,7 @@ def ledger(folder: Path, printed: str) -> Path:
     ("printed", "complaint"),
     [
         ("foo == 1", '"foo" means nothing here'),
-        ("valued(theta*I_y, 'lapan-classical') == 1", 'no number for "theta"'),
+        ("valued(theta*I_y, 'lapan-classical') == 1", 'no numerical value for "theta"'),
         ("valued(I_y, 'double-integrator-time') == 1", "gives no damping in a table [classical]"),
         ("valued(I_y, 'nope') == 1", "nope"),
         ("switched('lapan-classical').heat > 0", "give the torque, or the duration"),

@@ -108,7 +108,7 @@ def test_between_the_wells_there_is_no_best_speed(tmp_path: Path) -> None:
 
 
 def test_what_may_fall_for_ever_needs_bounds() -> None:
-    with pytest.raises(DerivationError, match=r"several local minima, which are not compared; choose as the control"):
+    with pytest.raises(DerivationError, match=r"several local minima, and these are not compared; choose"):
         derive(scalar("falling", -q + w, w**3 + q**2, 0, "free"))
 
 
