@@ -20,7 +20,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import starts
+from satsym.solvers.search import ends
 from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
 from satsym.solvers.search.following import BESIDE, LOST, finer, followed, part
 from satsym.solvers.search.mesh import refined
@@ -154,7 +154,7 @@ def _further(
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
-    patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
+    patient, probe = constrained or ends.random(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.first, first=first), first):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
