@@ -40,7 +40,7 @@ def solve(instance, progress=None):
     )
 '''
 
-RECORD = example("A method that solves", "python").replace("satsym.solvers.", "")
+RECORD = example("A solution method", "python").replace("satsym.solvers.", "")
 
 
 @pytest.fixture
