@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
     satsym derive derivations/examples/kept_orbit.py
 Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: cae828e8701251fd5c3d21670777ee2aca4d25f46e110ca3ddc93bab5b122a36
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: 193b3cbd1917e18db2e851e95a6eccb30eff3652306032ab38bd2b053ff14721
 """
 
 import math

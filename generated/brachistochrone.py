@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py 275a697eda192e53251d0df935bcab93
-Digest: 9c7d7f68e45ca1cef9b5566778142c1117422d4e76798d315f6d520ce88886a3
+Source: ../derivations/examples/brachistochrone.py 4e04102ca44c55ed551aa9e1d8954f9a
+Digest: e17f64478edf01de03147e0d4ec85c5453a09474f1b9003d767144800541001b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 19501ca060724477b03f4177a54c2527
-Digest: fdb30e57f80044f282833bdd71d9ced4602d8b9fcaeca36cd3895ed798e421c7
+Source: ../derivations/examples/cart_pole.py be0c65e3c02a1ee187955c29643bcb8a
+Digest: 8cf8bdd64a80e6f6b3f5155bf87ad4b7cee605937eba2b3b347fa145e5bdaeef
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Source: ../derivations/examples/catalyst.py 5c2c72162e14a8f86a0fb869f41db4ed
-Digest: 25ad297650433465330e9ab8427c4fee33b966aecabcb61ba52f236d77c8aaca
+Source: ../derivations/examples/catalyst.py 1924fbdee84b95c909d7c86c1498d3bc
+Digest: 26ca7257ebee364988116842c71b0c1338a7488cd389c69cd8aa910698d4d511
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py 2b3b137a815eb2ff5aaa375088bb3852
-Digest: d4909ff97003825ddd11d6957a01a65bfdaaddb0751774fd464be6d6c84ca0f8
+Source: ../derivations/examples/chain.py b423c1ad38d81e10864f6403217460f2
+Digest: db0de7a971e663cc609ace160e91b614609e4e36dfa39d7566e30b61a5215d7e
 """
 
 import math

@@ -3,8 +3,8 @@
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: 57b5e1c995c4893077ed83b50731dcb1749a45c737ce2a7f75b19d7f3812e3b5
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: c04dc11561ec6e500e40a4d88dc0f68f8f955140f61a0767331373d4894dba1e
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: 1757585953934bda15f96caa983e9507e597b7ae5c0372714c851976c932401a
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: 2db2a6aed151bcd23ae2ea84af18d921aa2a7392496b680203efe7282d67e5b8
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: 3fbc65fed801c7141485087066eb3874770601f80c3a422874f3e86f63ea9514
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: 4dad9cdd77f3e0bf5091613d75ffeedf9e598986bb0ac086a1d7da7e2aec5f48
 """
 
 import math

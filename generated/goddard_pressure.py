@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard_pressure.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard_pressure.py
-Source: ../derivations/examples/goddard_pressure.py 597c240079c601be5b735efbfb36b230
-Digest: a8110b369105a52e2088faecf89827f33315a32a7fa9bcdc21bee8620ca7a06a
+Source: ../derivations/examples/goddard_pressure.py cff3d8450d21b61e30780253131d7f9d
+Digest: d44ba383f104a76493e210a7fadf2ba6c1baa53637048c95e0388bcdbacfd13b
 """
 
 import math

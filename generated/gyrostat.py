@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: a5effcb786dc29005439b7eca17fb880c0fbb1fc29e29479f61c9d172e385297
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: 24c04e8c0c8a7a4ac0ff81e496e0362eddafc7c65d7a20a045607af5ac46c844
 """
 
 import math

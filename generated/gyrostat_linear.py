@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: 84b1261e81da67a907ba706e18d349b680996e2d2313fe6de15a89be42e50b41
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: ca2a56a4fe3de274f103268578d9f9ad372e1727dc737cbc1aaf23408e2ac3a4
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Source: ../derivations/examples/hypersensitive.py 93ee98122b97b77b100e2825240e18bf
-Digest: 47cc0136235f5121aeaf74e74d189bfd9f78e673837b000597017126222cce79
+Source: ../derivations/examples/hypersensitive.py a2e6777af7d81f7800123c3d996d577f
+Digest: e7572c0dac45992e953557d9dcc9919ace8900736f2540d3b14023a6e94a8808
 """
 
 import math

@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/inspection.py. Do not edit: mend tha
     satsym derive derivations/examples/inspection.py
 Source: ../derivations/examples/inspection.py ba3a62cd9ac7fd6d92bf3bb30bc2d1d5
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: 1d36ba1dad4495864ee7f05b867a8a689d0f8396be100bac6d3519e3014ab85c
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: 8d3465e61076b06ed87fd5de77323e15c6e705fd6173591be0057ded8b12cef2
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Source: ../derivations/examples/linear_tangent.py ee44677e3e6754938c94ad322707df6a
-Digest: f169bed8c2ab71c1515b88b7d6853f2f2024d708acb15a56ba869dbd50eab38f
+Source: ../derivations/examples/linear_tangent.py 7859caeb8e8d340b1f571b6bf3958cc4
+Digest: 2873b26394b82e0a8b1911e4d7c3733a74e344c06cd32ead0efb173e96b34c35
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: 5f4c1d9718068d11a9154942a18335ff2da73489e2bbe6a63eec28f0927e4d0a
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: f6a175acb06dc2c463faf9be419adc23ca1b006f892430f8bd8ef32c840c0b9e
 """
 
 import math

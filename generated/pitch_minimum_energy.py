@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: d3151d3a236b87d40b6287109e7dc83f7b1a2a8e31e9fbe5aae5e4a277a91734
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: a129c9c492d81bf3a2e7fabe579dd4008415ca44edb3584daadd77f1285c1827
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: a83bd9f232de62119a9dabb5073184db8f028bb3638c8c5302b0af5696e9fb45
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: 2f1498a28ad78d2ac17c522d3fc16e17fbc57778068b56437d60ccd2d3288e86
 """
 
 import math

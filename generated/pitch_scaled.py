@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: 89aec6303a6e463108e5e9332ec678ddca32e13c8ca58af077bb7f82d99cc920
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: 152f2b36bceea0cdd7a21e40202f42a5dbb0a417f32396816d7fd59df21c32ca
 """
 
 import math

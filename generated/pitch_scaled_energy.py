@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: f5d1d3b4aacb3f42c4f50487269cccf3d1a8f10285641d03268d27a67dbda2fe
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: 550a087ffd1ab84e8caf1e6bcb83a11105dc88d8a31f5b58f0437380e857f692
 """
 
 import math

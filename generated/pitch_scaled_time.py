@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: 3a591f123bfef731a82874e0c152a28ccfe61ec9885f0ac9a6c3c3d1ed2060c8
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: 44d0a36c210a4c48a97e550088738459966f4fad4287b4dfde19304b509fad43
 """
 
 import math

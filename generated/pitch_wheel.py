@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py a60970f4764114de84c27f5033dc08df
-Digest: eefd847215df98a5beea90cad05d57f0c868c6eec31da8711bb86bb0e9a7d5e6
+Source: ../derivations/pitch_wheel.py 6f132d08f603f74b458d9763f6cace18
+Digest: cd07b723324ced55009f6b8fbacbb2f6843a53e63e21d6c5f199c1fc8a102503
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: 14ed703792ec89add5671c8b6773d9f4c3e8872f9b41620b780c7296a5d0e180
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: dab7ffb6becd2f74d73aaf96eefb7e2afb7d27edade588a36a8afe0db78cd96c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: e17cce3470139a5711957d937572d8398100e8b2448670eb46e983452230b69a
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: 0965f65a51ee3330c0d6719296134dfff0ac3e1c44510497f50b60d7151313dc
 """
 
 import math

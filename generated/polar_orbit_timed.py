@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: 9c3aa9caaa97c81643a24284f695fb53a686908bf2e84f95e425ed6c1196d4d9
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: 323a78c5a2f086b61efbd0d203ad9e1e1eeb1ffd09189462aa6869c6e254f729
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
-Digest: cabff77a7d5126aa61370e2c098e283c76239680e5f4e2cd093a833f470693de
+Source: ../derivations/examples/oscillators.py 790e9a30cb29b5f02dee26a00093dde9
+Digest: d6c54cbc5109d4954ac79f9266379e8aeaa9122f3833fa4d56fc7d8db804d1d2
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
-Digest: e6a15c10aeab9c23958433a9b7f7f4b1b16d246fbf4b0a5e608e3b96508f694e
+Source: ../derivations/examples/oscillators.py 790e9a30cb29b5f02dee26a00093dde9
+Digest: 3e3379e969da84a3db2c845921bb3751c8c947b0a8d11e70f2f4f7a46168bfbf
 """
 
 import math

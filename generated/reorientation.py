@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py 1b2c8e35c07e7967e05f96d213b0230d
-Digest: 369c746fde4ca93cd6a17b8f88c4c761e1ceac7728fd1b9cac8601157c1d1c2b
+Source: ../derivations/examples/reorientation.py 2cdc777bdab0cb58d428a4243a641a7f
+Digest: 6048fd2d893014f4ed354609ea00d9a8b54dff29980342638a1115c54cf56025
 """
 
 import math

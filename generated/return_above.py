@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
     satsym derive derivations/examples/kept_orbit.py
 Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: e8dbdb6f241f24cd1930d41c29c8c09053701fad188005c41e18a611ba08ce74
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: c84669c47ae4ae76454022970f1cde40d3121aa32a648168d20986c96d9e0400
 """
 
 import math

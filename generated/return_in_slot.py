@@ -4,8 +4,8 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
     satsym derive derivations/examples/kept_orbit.py
 Source: ../derivations/examples/kept_orbit.py d56e2c422185465194780434dc4ab2e9
 Source: ../derivations/clohessy_wiltshire.py 76e49da5527c6e0ad02437036b6b61bc
-Source: ../derivations/polar_orbit.py 819e576c16e5cd5a0e15b93f61c0999b
-Digest: 97ee16730ca77e94f4e83acaaa88d04361ca06678cebd2105d4eb8667a704a87
+Source: ../derivations/polar_orbit.py cbc2ab9efa60b232bc9a9d755c4231e3
+Digest: affaa1abe67d27a8f83b002b70ecfa65349ac377e8e9412c9a9c4bbb21f85c8f
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: f9b81a5997b53f417c98f8d26603862c7b6b054eedc08cbbc84d96a04415a83d
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: e96d2139ccfb0b758591a68e657c6e03e281f61c4a59c611cc49a5111d8e534e
 """
 
 import math

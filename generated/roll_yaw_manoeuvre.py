@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py 55da2507f970c3dfc03ca5c4cf16fb71
-Digest: a2e1579a3443d4bea1a5ed4d4ef4c4c08768dd21f27fc55d7b93c807941db6a5
+Source: ../derivations/gimballed_wheel.py 556f29f5e697be71060e04a260695b4e
+Digest: 20ac5433cd169855069ce780bac930fc1b3d402981cf63633cf1edbd380835ae
 """
 
 import math

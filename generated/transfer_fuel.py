@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py 455e9784f8ec0337adceae0d84d53a33
-Digest: bc2efe14027bf136d80e50386b941bf7b51c8e8b8891267b78a6378f80e05e96
+Source: ../derivations/examples/transfer_fuel.py 9df8f4b0db4bec87bc5a4fbc2a8b1116
+Digest: 79f7e8c0ab38fb21c41d5d2e5ae65c7c51711266b760f644ad29855f776d9c5f
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py 1b494e8b28fb80003b0293b20a0c8020
-Digest: 3de3c92f677ec2769804219924a5dd34084ee9ff8942dfec2d7bd1028d1a92d2
+Source: ../derivations/examples/transfer_time.py b4b089fe3a65aa4bf480ad7c016c7e83
+Digest: fbd1a88cc224b27b9cb0b5a7a9981c668c4d0d6968cd2ee2796a6bc985e1fa93
 """
 
 import math

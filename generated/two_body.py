@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Source: ../derivations/two_body.py 4e9c21991e0fcd2aade0bb95e45d3ed5
-Digest: 7c7fb0a9ed4a8ef66a08e1f3066569e0d6e833a2fa51b9c3eccd084356be7c5c
+Source: ../derivations/two_body.py 94b397bdcfdda3df3d13fb950f54663c
+Digest: 59b1408a229d4d3a941ffc6ce8a096fb5cabd6c64977b54cf0bd3e741698e0e5
 """
 
 import math

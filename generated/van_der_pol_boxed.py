@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py ba431b9b41f8cca7996f87ee80b5ed26
-Digest: e8cc4bf1c7f0aa3e56922132eb6de4b0cbcc609ed33f8b714521454f03822fcb
+Source: ../derivations/examples/oscillators.py 790e9a30cb29b5f02dee26a00093dde9
+Digest: 36c592b9a63976ba51632609041f7747c87bfd5a7bdd4af17ff5ddf8c19db77b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/velocity_frame.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/velocity_frame.py
-Source: ../derivations/examples/velocity_frame.py 6f72507b7ac47aa5afd4379d59d59d32
-Digest: bff58d99bfe254f6b5d75ce959f3faf9f2fb49b17604b34e84c1187941e31d6f
+Source: ../derivations/examples/velocity_frame.py 4986ef846e7b8eae0ff647d0b7424e2c
+Digest: a42a5d68d566df89b64c715409fbf67951a2a10fcf44af15602c1bae80788393
 """
 
 import math
