@@ -105,7 +105,7 @@ def shared_options(command: Any) -> Any:
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-long_option = click.option("--long", "whole", is_flag=True, help="List the details as well, in one table.")
+long_option = click.option("--long", "whole", is_flag=True, help="List all entries in one table, with their details.")
 subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))
 trajectory_option = place_option(
     "--out",
@@ -129,7 +129,7 @@ set_option = click.option(
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the options of pictures, as ``look``, to a command with results in a folder of its name."""
     drawn = click.option(
-        "--plot", is_flag=True, help=f"Draw pictures as well. Without --out, all files go into results/NAME/{command}."
+        "--plot", is_flag=True, help=f"Also draw pictures. Without --out, all files go into results/NAME/{command}."
     )
 
     def decorated(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -173,7 +173,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     """Return the file that a relative path names, and the folder that it cannot leave, with symbolic links followed."""
     if Path(model).is_absolute():
         raise BadInput(
-            f"{shown(model)}: absolute paths are not allowed; write a path relative to the folder of the instance file"
+            f"{shown(model)}: absolute paths are not allowed; give a path relative to the folder of the instance file"
         )
     if not is_name(model.rpartition("/")[2]):
         raise BadInput(f"{shown(model)}: a file name must be {NAMES}")

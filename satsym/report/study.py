@@ -155,7 +155,7 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
     if changed := differences(before, study.identity):
         more = f", and {len(changed) - 3} more" if len(changed) > 3 else ""
         raise BadInput(
-            f"{printable(str(folder))}: holds another study: {'; '.join(changed[:3])}{more}; give another folder"
+            f"{printable(str(folder))}: contains another study: {'; '.join(changed[:3])}{more}; give another folder"
         )
 
 

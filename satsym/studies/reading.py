@@ -55,7 +55,7 @@ def design(asked: StudyTable, instance: Instance) -> Design:
     else:
         found = _sample(asked, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
     if found.count > MOST_ROWS:
-        raise BadInput(f"the study has {found.count} cases, but at most {MOST_ROWS} are allowed; write fewer values")
+        raise BadInput(f"the study has {found.count} cases, but at most {MOST_ROWS} are allowed; give fewer values")
     return found
 
 
@@ -69,7 +69,7 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     count = _count(parts[2], f"{key.text}: {shown(text)}")
     if logarithmic and not min(low, high) > 0.0:
         raise BadInput(
-            f"{key.text}: the logarithm of {shown(text)} does not exist; write positive limits, or leave out log:"
+            f"{key.text}: the logarithm of {shown(text)} does not exist; give positive limits, or leave out log:"
         )
     if (low == high) != (count == 1):
         raise BadInput(
@@ -116,7 +116,7 @@ def _number(text: str, key: Key) -> float | str:
     except ValueError:
         return text.strip()
     if number - number != 0.0:
-        raise BadInput(f"{key.text}: {shown(text)} is not finite; enter a finite number")
+        raise BadInput(f"{key.text}: {shown(text)} is not finite; give a finite number")
     return number
 
 
@@ -127,7 +127,7 @@ def _count(text: str, place: str) -> int:
         count = 0
     if not 1 <= count <= MOST_ROWS:
         raise BadInput(
-            f"{place}: the number of values must be a positive integer, not {shown(text)}; enter a whole "
+            f"{place}: the number of values must be a positive integer, not {shown(text)}; give a whole "
             f"number between 1 and {MOST_ROWS}"
         )
     return count

@@ -215,8 +215,8 @@ ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, 1.0)
         (2, -1.0, "mu is not positive; give the gravitational parameter of the centre"),
         (2, float("nan"), "mu is not finite; give numbers"),
         (3, float("inf"), "duration is not finite; give numbers"),
-        (3, "a day", "duration: the value is not an array of real numbers; give floats"),
-        (3, 1j, "duration: the value is not an array of real numbers; give floats"),
+        (3, "a day", "duration: the value is not an array of real numbers; give real numbers"),
+        (3, 1j, "duration: the value is not an array of real numbers; give real numbers"),
         (0, (1e308, 1e308, 0.0), "the motion leaves the range of floats; check the units and the duration"),
     ],
 )

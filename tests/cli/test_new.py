@@ -68,7 +68,7 @@ def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["two words"], 'NAME: got "two words"; write lower-case letters'),
+        (["two words"], 'NAME: got "two words"; use lower-case letters'),
         (["class"], "NAME: class is a Python keyword; choose another name, such as my_class"),
         (["random"], "NAME: random.py would hide a module that Python imports"),
         (["polar_orbit"], "NAME: polar_orbit is a model that comes with satsym"),

@@ -165,7 +165,7 @@ def test_a_bad_line_is_named(tmp_path: Path, key: str, value: str | None, words:
 
 
 def test_a_number_in_place_of_a_table_is_named(tmp_path: Path) -> None:
-    assert "time: got 5; write a table, [time]" in refusal(written(tmp_path, **{"time.tf": None, "time": "5"}))
+    assert "time: got 5; give a table, [time]" in refusal(written(tmp_path, **{"time.tf": None, "time": "5"}))
 
 
 def test_a_time_that_is_not_reachable_is_named(tmp_path: Path) -> None:

@@ -152,7 +152,7 @@ def plant(instance: Instance, feedback: str) -> Plant:
     if not -np.inf < low < 0.0 < high < np.inf:
         raise BadInput(
             f"{name}: [control] {spec.control_names[0]}: the bounds {low:g} and {high:g} must be finite, with "
-            "0 between them; a switching feedback must be able to push in both directions"
+            "0 between them; a switching feedback needs a control that can act in both directions"
         )
     final = final_argument(instance)
     target = final[2 * len(spec.states) + position], final[2 * len(spec.states) + rate]

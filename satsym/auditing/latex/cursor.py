@@ -180,7 +180,7 @@ class Cursor(ABC):
             self._i += 1
         if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
             raise Unread(
-                "brackets of different kinds around an expression, as in a half-open interval, are not supported",
+                "brackets of different kinds, as around a half-open interval, are not supported",
                 opening.at,
             )
         return self._i - 1

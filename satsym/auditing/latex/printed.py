@@ -76,7 +76,7 @@ class LetterCursor(Cursor):
         if sign.text not in ("delta", "Delta"):
             return False
         if token.kind == "letter" and self._is("(", 1):
-            raise Unread("this delta could be a difference or a factor in front of a bracket", sign.at)
+            raise Unread("this delta could denote a difference, or be a factor before a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"

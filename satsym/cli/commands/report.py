@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   satsym report soft-return --html soft-return.html
-  satsym report transfer-fuel --html transfer.html --interactive    with a slider over time
-  satsym report soft-return --html soft-return.html --prove         with a theorem beside the certificate
+  satsym report transfer-fuel --html transfer.html --interactive    with a slider for the time
+  satsym report soft-return --html soft-return.html --prove         with a proof in addition to the certificate
   satsym report my_case.toml --html my_case.html --derivation my_model.py"""
 
 
