@@ -69,7 +69,7 @@ language_option = click.option(
     expose_value=False,
     is_eager=True,
     callback=_spoken,
-    help=f"Language of the output; by default that of {said.VARIABLE}, or English.",
+    help=f"Language of the output; by default the one that {said.VARIABLE} names, or English.",
 )
 
 
@@ -170,7 +170,7 @@ _size_option = click.option(
     "--size",
     metavar="SIZE",
     type=click.Choice(tuple(SIZES)),
-    help=f"Size of the pictures: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
+    help=f"Size of the pictures: {', '.join(f'{name} ({what})' for name, what in SIZES.items())}.",
 )
 _title_option = click.option(
     "--no-title", "untitled", is_flag=True, help="Leave out the titles, for pictures that have a caption."

@@ -223,7 +223,7 @@ class InstanceFile(_Table, frozen=True):
         dict[str, Quantity],
         Key('initial value of every state; "free" if the value is to be found', unit="the model's", names="STATE"),
     ]
-    time: Annotated[TimeTable, Key("when it begins and ends")]
+    time: Annotated[TimeTable, Key("initial and final time")]
     title: Annotated[Text, Key("title of one line")] = ""
     parameters: Annotated[
         dict[str, Quantity],
@@ -252,7 +252,7 @@ class InstanceFile(_Table, frozen=True):
     ] = {}
     lqr: Annotated[LqrTable | None, Key("a linear-quadratic regulator", REGULATING)] = None
     solver: Annotated[SolverOptions, Key("options of the solvers", MOVING)] = SolverOptions()
-    guess: Annotated[GuessTable, Key("where solvers may start", SOLVING)] = GuessTable()
+    guess: Annotated[GuessTable, Key("initial guesses for the solvers", SOLVING)] = GuessTable()
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
@@ -263,8 +263,8 @@ class InstanceFile(_Table, frozen=True):
             "STATE or quantity",
         ),
     ] = {}
-    switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
-    driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None
+    switching: Annotated[SwitchingTable | None, Key("a switching feedback law", RELAYS)] = None
+    driven: Annotated[DrivenTable | None, Key("a control that other instances determine", COMPARING)] = None
     continuation: Annotated[
         dict[str, Ends],
         Key(
@@ -274,7 +274,7 @@ class InstanceFile(_Table, frozen=True):
             "PARAMETER, t0, tf, initial.STATE or final.STATE",
         ),
     ] = {}
-    study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
+    study: Annotated[StudyTable | None, Key("a study of this instance over ranges of values", STUDYING)] = None
     orbit: Annotated[OrbitTable | None, Key("date of the motion, and orientation of its plane in space", EXPORTING)] = (
         None
     )

@@ -37,7 +37,7 @@ _DECLARING = "satsym.symbolic"
 """The package that derivation files import, and generated modules never do."""
 _STATED = re.compile(r"""\bProblem\(\s*(?:name\s*=\s*)?["']([a-z][a-z0-9_]{0,99})["']""")
 
-_ANEW = "write it anew with `satsym derive`"
+_ANEW = "write it again with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
 

@@ -88,7 +88,7 @@ def carry_out(
         if not _passing(done):  # else the others are wanted once more
             parts.remove(folder)
     except OSError as error:
-        reason = error.strerror or "the path leads nowhere"
+        reason = error.strerror or "the path cannot be resolved"
         raise BadInput(
             f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat the command "
             "with --resume"

@@ -150,7 +150,7 @@ def _message(angles: list[str], at: tuple[int, ...], others: dict[tuple[int, ...
 
 def _turns(count: int) -> str:
     if not count:
-        return "ends as stated"
+        return "ends at the given value"
     return f"ends {abs(count)} turn{'s' if abs(count) > 1 else ''} {'above' if count > 0 else 'below'} what is stated"
 
 

@@ -64,7 +64,7 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     logarithmic = text.startswith("log:")
     parts = text.removeprefix("log:").split(":")
     if len(parts) != 3 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is not a range; write {RANGE}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a range; give {RANGE}")
     low, high = (_value(key, part, instance) for part in parts[:2])
     count = _count(parts[2], f"{key.text}: {shown(text)}")
     if logarithmic and not min(low, high) > 0.0:
@@ -83,13 +83,13 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
     key = keys.find(name, instance)
     parts = text.split(",")
     if len(parts) != 2 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is not a {kind} distribution; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a {kind} distribution; give {PAIR[kind]}")
     first = _value(key, parts[0], instance)
     if kind == "normal":
         return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
     second = _value(key, parts[1], instance)
     if not first < second:
-        raise BadInput(f"{key.text}: {shown(text)}, but LOW must be less than HIGH; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)}, but LOW must be less than HIGH; give {PAIR[kind]}")
     return Distribution(key, first, second, normal=False)
 
 

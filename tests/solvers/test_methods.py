@@ -118,10 +118,18 @@ def test_every_kind_of_controls_has_one_method_to_begin_with() -> None:
 @pytest.mark.parametrize(
     ("name", "method", "line"),
     [
-        ("soft-return", "bang-bang", 'solver.method: "bang-bang" is for controls that enter without a square; use '),
-        ("return-to-orbit", "sweep", "a given final r, r_dot, theta, theta_dot cannot be swept for; leave it free and"),
+        (
+            "soft-return",
+            "bang-bang",
+            'solver.method: "bang-bang" is for controls whose squares do not enter the cost; use ',
+        ),
+        (
+            "return-to-orbit",
+            "sweep",
+            "a given final r, r_dot, theta, theta_dot is not supported by the sweep method; leave it",
+        ),
         ("double-integrator-time", "linear", 'which "linear" cannot find; use "bang-bang"'),
-        ("ends-5-free", "sweep", "time.tf: a free final time cannot be swept for; use method "),
+        ("ends-5-free", "sweep", "time.tf: the sweep method does not support a free final time; use method "),
     ],
 )
 def test_what_a_method_cannot_solve_is_refused_in_a_line(name: str, method: str, line: str) -> None:

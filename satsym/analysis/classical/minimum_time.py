@@ -196,8 +196,8 @@ def within_already(plant: Plant) -> BadInput:
     """Return the refusal of an instance that starts within the deadband and states no final time."""
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
-        f"{case.called}: [initial] {name} lies within the deadband of its target already; give another value, or a "
-        "final time to simulate to"
+        f"{case.called}: [initial] {name} is already within the deadband of its target; give another value, or a "
+        "final time for the simulation"
     )
 
 

@@ -81,7 +81,7 @@ def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: A
         bad = ~np.isfinite(values)
         refuse_first(bad.any(axis=0) if bad.ndim > 1 else bad, shape, f"{name} is not finite; give numbers")
     refuse_first(m <= 0.0, shape, "mu is not positive; give the gravitational parameter of the centre")
-    refuse_first((r == 0.0).all(axis=0), shape, "position is the centre itself; start somewhere else")
+    refuse_first((r == 0.0).all(axis=0), shape, "the position is the centre itself; start elsewhere")
     return States(r, v, m, dt, shape)
 
 

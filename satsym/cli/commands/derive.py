@@ -102,7 +102,7 @@ def _compare(differences: Sequence[str], folder: Path, command: str) -> ExitCode
         tell(say("<folder> agrees with the derivations", folder=folder))
         return ExitCode.DONE
     emit("".join(differences))
-    complain(f"{folder} is not what the derivations say; run: {command}")
+    complain(f"{folder} does not agree with the derivations; run: {command}")
     return ExitCode.STALE
 
 

@@ -69,7 +69,7 @@ def report(
     if page is None:
         raise click.UsageError("Give --html FILE, the file to write the page to.")
     if study is not None and not interactive:
-        raise click.UsageError("--study DIR is shown with --interactive.")
+        raise click.UsageError("--study DIR requires --interactive.")
     if interactive:
         library("plotly.offline", "plotly", "interactive")  # now, before solving
     case = instance.load(subject)

@@ -126,7 +126,7 @@ def study(
                 watch=lambda advance: line.report(progress_line(advance), advance.done / max(1, advance.total)),
             )
         except KeyboardInterrupt as stop:
-            stop.add_note("--resume goes on with what is done")
+            stop.add_note("repeat the command with --resume to continue")
             raise
     drawn = draw(folder, look)[1] if look else []
     pictures = {"pictures": [str(path) for path in drawn]} if look else {}
