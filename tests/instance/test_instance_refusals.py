@@ -53,8 +53,8 @@ def written(folder: Path, **changes: str | None) -> Path:
         # tables and keys
         ("speling", "1", ["speling: unknown key"]),
         ("titel", '"x"', ["titel: unknown key", 'did you mean "title"?']),
-        ("tf", "1", ["tf: unknown key", "belongs under [time]"]),
-        ("steps", "1", ["steps: unknown key", "belongs under [solver]"]),
+        ("tf", "1", ["tf: unknown key", "belongs in the table [time]"]),
+        ("steps", "1", ["steps: unknown key", "belongs in the table [solver]"]),
         ("solver.tolerence", "1", ["[solver] tolerence: unknown key", 'did you mean "tolerance"?']),
         ("parameters.sigme", "1", ["[parameters] sigme", 'did you mean "sigma"?']),
         ("initial.rdot", "1", ["[initial] rdot", 'did you mean "r_dot"?']),

@@ -68,7 +68,7 @@ def test_adding_a_method_is_one_record(coasting: Method, tmp_path: Path) -> None
     assert not found.u.any()
     with pytest.raises(BadInput, match=r"case\.toml: time\.tf: coasting never ends"):
         solve(instance.load(str(case(tmp_path, "coasting", tf='"free"'))))
-    with pytest.raises(BadInput, match=r'\[solver\] method: got "gliding"; write one of "auto", .*, "coasting"'):
+    with pytest.raises(BadInput, match=r'\[solver\] method: got "gliding"; give one of "auto", .*, "coasting"'):
         instance.load(str(case(tmp_path, "gliding")))
 
 
@@ -88,7 +88,7 @@ def test_the_command_line_lists_and_takes_a_method_that_was_added(coasting: Meth
 
 
 def test_without_the_record_there_is_no_such_method(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match=r'\[solver\] method: got "coasting"; write one of "auto", "sweep", "colloc'):
+    with pytest.raises(BadInput, match=r'\[solver\] method: got "coasting"; give one of "auto", "sweep", "colloc'):
         instance.load(str(case(tmp_path, "coasting")))
 
 
@@ -128,7 +128,7 @@ def test_every_kind_of_controls_has_one_method_to_begin_with() -> None:
             "sweep",
             "a given final r, r_dot, theta, theta_dot is not supported by the sweep method; leave it",
         ),
-        ("double-integrator-time", "linear", 'which "linear" cannot find; use "bang-bang"'),
+        ("double-integrator-time", "linear", 'which "linear" does not support; use "bang-bang"'),
         ("ends-5-free", "sweep", "time.tf: the sweep method does not support a free final time; use method "),
     ],
 )
