@@ -195,7 +195,9 @@ class StudyTable(_Table, frozen=True):
     seed: Annotated[Seed | None, Key("seed of the random numbers of a sample", STUDYING)] = None
     command: Annotated[Commands | None, Key("the command that is run for each case", STUDYING)] = None
     certificate: Annotated[Certificates | None, Key("how solutions are certified", STUDYING)] = None
-    feedback: Annotated[Name | None, Key("the control law of a simulation, as in simulate --feedback", STUDYING)] = None
+    feedback: Annotated[
+        Name | None, Key("the control law of a simulation, as for `satsym simulate --feedback`", STUDYING)
+    ] = None
     trajectories: Annotated[Flag, Key("whether trajectories are saved", STUDYING)] = False
 
 

@@ -35,11 +35,11 @@ Examples:
 @place_option(
     "--derivation", "stated", metavar="FILE.py", help="Derivation file of X's model, if the model is your own."
 )
-@click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
+@click.option("--interactive", is_flag=True, help="Add sliders, the values at the pointer, and the motion in space.")
 @place_option(
     "--study", "study", metavar="DIR", help="With --interactive: a study of X; a slider chooses among its solutions."
 )
-@click.option("--prove", "proving", is_flag=True, help="Add the proof of the solution, as by `satsym prove`.")
+@click.option("--prove", "proving", is_flag=True, help="Add the proof that `satsym prove` gives of the solution.")
 @set_option
 def report(
     subject: str,

@@ -68,7 +68,7 @@ def _listed(choices: type[Choice]) -> str:
 @click.option("--trajectories", is_flag=True, help="Also save the trajectories, in a few npz files.")
 @click.option("--table", metavar="FORM", help=f"File format of the table: {_listed(TableFormat)}; by default csv.")
 @place_option("--out", metavar="DIR", help="Output folder; by default results/NAME/study.")
-@click.option("--resume", is_flag=True, help="Continue the study in the output folder, or start it.")
+@click.option("--resume", is_flag=True, help="Continue the study in the output folder; without one, start it.")
 @click.option(
     "--workers",
     type=click.IntRange(1, 1000),
