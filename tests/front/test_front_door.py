@@ -163,7 +163,7 @@ def test_what_is_refused_in_a_file_is_refused_in_python_by_the_same_line(
 @pytest.mark.parametrize(
     ("refused", "line"),
     [
-        (lambda: satsym.solve("soft-retur"), 'soft-retur: no instance of this name; did you mean "soft-return"'),
+        (lambda: satsym.solve("soft-retur"), 'soft-retur: there is no instance of this name; did you mean "soft'),
         (lambda: satsym.solve(PUSH), "a Problem is not an instance; make one with Instance.of"),
         (lambda: satsym.Instance.of(3), "nothing can be derived from 3; give a Problem"),
         (
