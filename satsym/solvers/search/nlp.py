@@ -19,8 +19,8 @@ TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
 RESTORED = 2
 """Maximum number of all iterations, relative to that of iterations outside the restoration of feasibility."""
 
-SHORT, STALLED, RESTORING, DIVERGED = 0.05, 40, 60, 1e15
-"""A programme is given up after STALLED steps in a row of which less than the fraction SHORT was taken, after RESTORING
+SHORT_STEP, STALLED, RESTORING, DIVERGED = 0.05, 40, 60, 1e15
+"""A programme is given up after STALLED steps in a row of which less than the fraction SHORT_STEP was taken, after RESTORING
 iterations that restore feasibility, or if the dual infeasibility exceeds DIVERGED. Of 491 programmes that could be
 solved 6 met one of these limits first; those that could not took half of all iterations, of which the limits save 40 %.
 """
@@ -91,7 +91,7 @@ class _Watched:
             primal step that are taken, and number of trial steps.
         """
         self.iterations += 1
-        self.short = self.short + 1 if others[5] < SHORT else 0
+        self.short = self.short + 1 if others[5] < SHORT_STEP else 0
         self.restoring += mode
         if self.short > STALLED or self.restoring > RESTORING or others[0] > DIVERGED:
             return False

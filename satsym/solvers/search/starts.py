@@ -14,7 +14,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.search import ends
+from satsym.solvers.search import ends, revolutions
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import flow, followed, resting, wanted
@@ -25,9 +25,6 @@ WITHIN = 1e2
 
 WAVES = 3
 """Number of harmonic waves that random starts are made of."""
-
-EQUAL_RATE = 1e-9
-"""Relative difference of a rate and a state below which they count as the same quantity."""
 
 DRAWS, BENT = 40, (0.0, 0.3, 1.0, 0.3)
 """Number of starts with random values of free initial and final states, and amplitudes of waves on their paths."""
@@ -123,20 +120,20 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
             Plan(noise=wider[k // len(LASTING) % len(wider)], seed=6 + k, scale=LASTING[k % len(LASTING)])
             for k in range(MORE)
         ]
-    round_ = turning(instance, controls)
+    pairs = revolutions.pairs(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
     if ends.random(instance):  # every other path is a bent line, because coasts of several revolutions diverge
         found[1:1] = [Plan(coasting=k % 2 > 0, drawn=k, noise=BENT[(k - 1) % 4], seed=k) for k in range(1, DRAWS + 1)]
-    if round_:
-        places = [place for pair in round_[:2] for place in pair]
-        speed = 0.5 * (_turn_rate(start, round_) + _turn_rate(np.where(np.isnan(end), start, end), round_))
+    if pairs:
+        places = [place for pair in pairs[:2] for place in pair]
+        speed = revolutions.rate(instance, controls, start, end, pairs)
         if given or np.isnan(end[places]).any():
             usual = int(speed * duration / (2.0 * np.pi))
             turns = dict.fromkeys((usual, usual - 1, usual + 1))
             first = 0 if speed > 0.0 else 1  # a straight line leads through the centre of what goes round
             found[first:first] = [*(Plan(turns=k) for k in turns), Plan(coasting=True)]
         elif speed > 0.0:
-            angle = _swept(start, end, round_)
+            angle = revolutions.swept(start, end, pairs)
             rounds = [Plan(turns=k, scale=max(abs(angle + 2.0 * np.pi * k) / speed / duration, 0.2)) for k in TURNS]
             found = rounds + found
     elif given and len(instance.final) >= len(start) - 1:
@@ -195,36 +192,6 @@ def _ranged(controls: Controls) -> Places:
     return np.array([k for k in given if np.isfinite(controls.lower[k]) and np.isfinite(controls.upper[k])], int)
 
 
-def turning(instance: Instance, controls: Controls) -> list[tuple[int, int]]:
-    """Return index pairs of positions and their velocities (two or three pairs), or an empty list.
-
-    It is empty if a position has to be positive: it is a distance then, and the other positions are angles.
-    """
-    rng, n = np.random.default_rng(1), len(instance.initial)
-    x = np.array(instance.initial) * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, n)) + 1e-3 * rng.uniform(1.0, 2.0, n)
-    v = resting(controls)
-    with np.errstate(all="ignore"):
-        f = flow(instance, controls, instance.t0, x, v)
-    pairs = [(i, j) for i in range(n) for j in range(n) if i != j and abs(f[i] - x[j]) <= EQUAL_RATE * abs(x[j])]
-    polar = any(instance.model.spec.states[i].positive for i, _ in pairs)
-    return pairs if 2 <= len(pairs) <= 3 and not polar else []
-
-
-def _turn_rate(x: Array, pairs: list[tuple[int, int]]) -> float:
-    (p, vp), (q, vq) = pairs[:2]
-    return float(abs(x[p] * x[vq] - x[q] * x[vp]) / max(x[p] ** 2 + x[q] ** 2, 1e-300))
-
-
-def _sense(x: Array, pairs: list[tuple[int, int]]) -> float:
-    (p, vp), (q, vq) = pairs[:2]
-    return float(np.sign(x[p] * x[vq] - x[q] * x[vp])) or 1.0
-
-
-def _swept(start: Array, end: Array, pairs: list[tuple[int, int]]) -> float:
-    (p, _), (q, _) = pairs[:2]
-    return float((_sense(start, pairs) * (np.arctan2(end[q], end[p]) - np.arctan2(start[q], start[p]))) % (2.0 * np.pi))
-
-
 def begun(programme: Programme, plan: Plan) -> Array:
     """Return the initial unknowns of a programme according to a plan."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
@@ -249,7 +216,7 @@ def begun(programme: Programme, plan: Plan) -> Array:
     if plan.coasting:
         x = _blended(programme, times, share, start, end, v)
     elif plan.turns is not None:
-        x = _revolving(x, share, start, end, turning(instance, controls), plan.turns)
+        x = revolutions.spiral(instance, controls, x, times, (start, end), plan.turns)
     if free.any() and not plan.coasting and plan.turns is None:
         x = _followed(programme, times, x, free, v)
     for i, state in enumerate(instance.model.spec.states):
@@ -325,27 +292,6 @@ def _finer(times: Array, pieces: int = 4) -> tuple[Array, Places]:
     inner = np.linspace(0.0, 1.0, pieces, endpoint=False)
     fine = (times[:-1, None] + np.diff(times)[:, None] * inner).ravel()
     return np.append(fine, times[-1]), np.arange(len(times)) * pieces
-
-
-def _revolving(x: Array, share: Array, start: Array, end: Array, pairs: list[tuple[int, int]], turns: int) -> Array:
-    """Return states on a spiral about the origin, or the straight line if the final position is not given.
-
-    Free final velocities are those of a circular orbit.
-    """
-    (p, vp), (q, vq) = pairs[:2]
-    if np.isnan(end[[p, q]]).any():
-        return x
-    sense = _sense(start, pairs)
-    sweep = _swept(start, end, pairs) + 2.0 * np.pi * turns
-    begin, radius = np.arctan2(start[q], start[p]), np.hypot(start[p], start[q])
-    far, first = np.hypot(end[p], end[q]), np.hypot(start[vp], start[vq])
-    last = np.hypot(end[vp], end[vq])
-    speeds = first, first * np.sqrt(radius / max(far, 1e-300)) if np.isnan(last) else last
-    r, angle = radius + (far - radius) * share, begin + sense * sweep * share
-    speed = sense * np.sign(sweep) * (speeds[0] + (speeds[1] - speeds[0]) * share)
-    x = x.copy()
-    x[p], x[q], x[vp], x[vq] = r * np.cos(angle), r * np.sin(angle), -speed * np.sin(angle), speed * np.cos(angle)
-    return x
 
 
 def _followed(programme: Programme, times: Array, x: Array, free: Array, v: Array) -> Array:
