@@ -62,6 +62,8 @@ _OPEN_END = re.compile(
     r"(?:[-+=]|\\(?:quad|times|cdot)|\\sum(?:[_^](?:\{[^{}]*\}|\\?\w+))*)(?:[\s&]|\\nonumber|\\notag|\\qquad)*\Z"
 )
 """Pattern of the end of a line after which an equation continues on the next line."""
+_FOLLOWS = re.compile(r"[\s&]*=(?=\s*[^\s=])")
+"""Pattern of the sign at the beginning of a display that continues the one before it."""
 _RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
 _GROUP = re.compile(r"\{[^{}]*\}")
 _INDENT = 80
@@ -165,6 +167,8 @@ def displays(source: Source) -> Iterator[Display]:
             while item in seen:
                 item += "'"
             seen.add(item)
+            if follows := _FOLLOWS.match(row):
+                row_start, row = row_start + follows.end(), row[follows.end() :]
             section = f"section {number} {title}".replace("  ", " ").strip() if title or number else ""
             yield Display(
                 row,

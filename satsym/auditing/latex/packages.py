@@ -36,7 +36,8 @@ _UNITS |= {"kilogram": "kg", "kelvin": "K", "watt": "W", "joule": "J", "hertz": 
 _UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " ", ".": " "}
 """Units and prefixes of the package siunitx -> how they are printed."""
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
-_DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
+_DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial", "odv": "d"}
+_DERIVATIVES |= {"diff": "d", "diffp": "partial"}
 
 
 def put_in(found: Sequence[Token]) -> list[Token]:
@@ -58,13 +59,26 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         ):
             done += [replace(found[i], text="mathrm"), token]
             i += 1
-        elif name in ("boldsymbol", "bm", "mathbf") and i < len(found) and found[i].kind == "open":
+        elif name in ("boldsymbol", "bm", "mathbf", "pmb", "symbf") and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             done += _bold(token, found[i + 1 : end - 1])
             i = end
         elif name in ("SI", "si", "num", "unit", "qty") and i < len(found) and found[i].text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside
+        elif name == "substack" and i < len(found) and found[i].kind == "open":
+            end = group_end(found, i)
+            inside = put_in(found[i + 1 : end - 1])
+            done += [Token("sign", ",", t.at) if (t.kind, t.text) == ("macro", "\\") else t for t in inside]
+            i = end
+        elif name == "operatorname" and i < len(found) and found[i].text == "*":
+            end = group_end(found, i + 1)
+            said = "".join(t.text for t in found[i + 2 : end - 1] if t.kind == "letter")
+            optimum = said in ("argmin", "argmax")
+            done.append(replace(token, text=said) if optimum else token)
+            i = end if optimum else i + 1
+        elif name == "degree":
+            done += [Token("sign", "^", token.at), Token("macro", "circ", token.at)]
         elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
             done.append(Token("macro", f"arg{found[i].text}", token.at))
             i += 1

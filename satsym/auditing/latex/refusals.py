@@ -10,6 +10,7 @@ from itertools import pairwise
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.operators import OperatorCursor, product_of
+from satsym.auditing.latex.quotients import is_differential
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
 from satsym.formula.tree import Call, Node, Num, Pow, Sym, children, constant
@@ -115,6 +116,8 @@ class RefusalCursor(OperatorCursor):
         if not above or (len(above) > 1 and above[1].text in ("^", "_")):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
+            raise Unread("this kind of derivative is not supported", at)
+        if len(below) > 1 and is_differential(below[0]) and "d" in {t.text for t in above}:
             raise Unread("this kind of derivative is not supported", at)
         if len(above) < 2:
             return

@@ -42,9 +42,9 @@ def lines(found: Sequence[Token]) -> list[Line]:
     for place, row in _rows(found):
         for piece in (piece for part in _equations(row) for piece in _at_commas(_at_colons(part))):
             line = _sides(piece)
+            before = begun.get(place) or (begun[max(begun)] if begun else None)
             if not line.sides[0] and line.signs[0] == "tends":  # an arrow in front says that something follows
                 del line.sides[0], line.signs[0]
-            before = begun.get(place) or (begun[max(begun)] if begun else None)
             if done and place in begun:
                 before = done[-1]
             first = line.sides[0][0] if line.sides[0] else None
@@ -86,9 +86,9 @@ def _parted(line: Line) -> list[Line]:
 def _refuse_arrow(line: Line) -> None:
     """Refuse an arrow that could mean a limit, an implication or a map, and an inequality in a chain of relations."""
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
-        if sign == "unequal" and len(line.signs) > 1:
+        if sign == "unequal" and "unequal" in line.signs[:-1]:
             raise Unread("inequalities in chains of relations are not supported", (after or before)[0].at)
-        if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
+        if sign == "tends" and len(line.signs) > 1:
             raise Unread("arrows between more than two expressions are not supported", (after or before)[0].at)
 
 
@@ -248,7 +248,8 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     parts = [
         piece
         for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
-        for piece in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+        for listed in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+        for piece in ([listed[:1], listed[1:]] if _lacks_comma(listed) else [listed])
     ]
     listed = any(token.text in ELLIPSES for token in found)
     listed |= any(len(part) == 3 and part[0].text in COUNTERS and part[1].text == "=" for part in parts)
@@ -277,6 +278,11 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         else:
             raise Unread("a comma is not allowed here", _between(found, kept))
     return done
+
+
+def _lacks_comma(part: Sequence[Token]) -> bool:
+    """Return whether an ellipsis and the end of a list stand side by side, without a comma between them."""
+    return len(part) == 2 and part[0].text in ELLIPSES and part[1].kind in ("letter", "number")
 
 
 def _at_colons(found: Sequence[Token]) -> list[Token]:

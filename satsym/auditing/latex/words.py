@@ -88,11 +88,13 @@ OPTIMA = {
     "sup": "supremum",
 }
 """Operators over a subscript, such as a minimum -> the function that represents them in trees."""
+EITHER_PRODUCT = "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot"
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
 NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
     "skew".split()
 )
+NOT_COMPARED |= frozenset("given order between both equal times maps volume".split())
 NOT_COMPARED |= frozenset("hessian transform open_interval binomial factorial".split())
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
 NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))
@@ -140,6 +142,8 @@ SAID |= frozenset(
     "et ou si avec où pour quand donc soit lorsque und oder mit für wenn dove per con para cuando".split()
 )
 """Words between formulas, in several languages."""
+OTHERWISE = frozenset("else elsewhere lainnya sonst sinon altrimenti".split())
+"""Words for the last of several cases, apart from otherwise itself."""
 SHORT_WORDS = frozenset("in on at by of is".split())
 """Words between formulas that would be read as products of letters if they were not set upright."""
 UNITS = frozenset(
@@ -150,7 +154,7 @@ COUNTERS = frozenset("i j k l m n N M K".split())
 """Letters of which the index of a member of a sequence is composed."""
 LAPSED = frozenset("phi varphi Phi varPhi psi Psi chi".split())
 """Letters of functions of elapsed time; a difference of times in brackets after such a letter is not a factor."""
-ARGUED = LAPSED | frozenset("f F".split())
+ARGUED = LAPSED | frozenset("f F sigma".split())
 """Letters of functions; a product in brackets after such a letter is not a factor."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())
 """Letters after which a bracket with time and another term, as in u(t - T), is not a factor."""
