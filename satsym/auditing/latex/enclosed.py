@@ -56,7 +56,8 @@ class EnclosedCursor(RefusalCursor):
             begin = self._i
             inside = [] if token.kind == "macro" else self._found[begin + 1 : self._bracket_end()]
             self._i = begin
-            operator = token.kind == "macro" or bar_in(inside) >= 0
+            summed = len(split(inside, lambda t: t.kind == "sign" and t.text in "+-")) > 1
+            operator = token.kind == "macro" or bar_in(inside) >= 0 or not summed
         return (
             operator
             and token is not None
@@ -106,6 +107,12 @@ class EnclosedCursor(RefusalCursor):
         self._i = behind
         grouped = self._is("{", kind="open") and self._is("(", 1)
         self._i += grouped
+        if known and self._is("^"):
+            self._i += 1
+            power = self._inner(self._script(), self._found[begin].at)
+            if self._is("("):
+                return Pow(Call(word, self._places()), power)
+            self._i = behind
         token = self._peek()
         timed = not known and self._is("t", 1, "letter") and self._is(")", 2)
         if token is not None and not timed and (self._is("(") or (known and self._is("["))):
@@ -117,7 +124,7 @@ class EnclosedCursor(RefusalCursor):
         if letter is not None and (after is None or not self._begins_factor(after)):
             return Call(word, (self._symbol(letter, self._found[begin].at),))
         self._i = behind
-        if known and token is not None and token.kind == "begin":
+        if known and token is not None and (token.kind == "begin" or self._is("{", kind="macro")):
             return Call(word, (self._factor(),))
         self._i = begin
         return None

@@ -74,11 +74,13 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         reading.statements += sides if line.bare else []
         for sign, side, (one, other) in zip(line.signs, line.sides[1:], pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
-                raise Unread(
-                    "brackets with a comma are not supported here, as they could be commutators", line.sides[0][0].at
-                )
+                one = Call("bracket", one.entries)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
+                function = one.factors[0] if isinstance(one, Mul) and len(one.factors) == 2 else None
+                if reading.lenient and isinstance(function, Sym):  # whose values are sets
+                    reading.places.setdefault(function.name, set()).add("")
+                    continue
                 raise Unread(
                     "braces could enclose a set here; write round brackets around a product", line.sides[0][0].at
                 )

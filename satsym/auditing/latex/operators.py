@@ -169,10 +169,18 @@ class OperatorCursor(QuotientCursor):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
         if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
-            raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
+            before = self._found[begin - 1] if begin else None
+            if len(arguments) > 2 or (before is not None and (before.kind == "letter" or before.text in GREEK)):
+                raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
+            fields = Call("bracket", tuple(Call("bracket", a.entries) if isinstance(a, Grid) else a for a in arguments))
+            if not (self._is("(") and self._is_place_next()):
+                return fields
+            inside = self._found[self._i + 1 : self._bracket_end()]
+            return Call("value", (fields, self._inner(inside, at)))
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
-            if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
+            signed = before.kind in ("sign", "open") and before.text not in ")]'"
+            if not signed and before.kind != "number" and before.text not in words.SIGNS:
                 raise Unread("arguments in brackets after this expression are not supported", at)
         if len(arguments) == 1 and square and self._is("(") and self._is_place_next():
             raise Unread("arguments in brackets after this expression are not supported", at)

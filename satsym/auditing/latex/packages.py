@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
-from satsym.auditing.latex.words import STYLES, UNITS
+from satsym.auditing.latex.words import RELATIONS, STYLES, UNITS
 
 _OTHER_NAMES = {
     "cross": "times",
@@ -66,6 +66,9 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         elif name in ("SI", "si", "num", "unit", "qty") and i < len(found) and found[i].text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside
+        elif name in ("stackrel", "underset", "overset") and (rows := _stacked(found, i)):
+            done += put_in(rows)
+            i = group_end(found, group_end(found, i))
         elif name == "substack" and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             inside = put_in(found[i + 1 : end - 1])
@@ -101,6 +104,17 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         else:
             done.append(token)
     return done
+
+
+def _stacked(found: Sequence[Token], i: int) -> list[Token]:
+    """Return two relations that are set above each other as a list; empty for anything else."""
+    end = group_end(found, i)
+    if end >= len(found) or found[i].kind != "open" or found[end].kind != "open":
+        return []
+    rows = [found[i + 1 : end - 1], found[end + 1 : group_end(found, end) - 1]]
+    if not all(any(t.text == "=" or t.text in RELATIONS for t in row[1:-1]) for row in rows):
+        return []
+    return [*rows[0], Token("sign", ",", found[i].at), *rows[1]]
 
 
 def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token], int]:

@@ -58,6 +58,9 @@ class Parser(SumCursor):
                 self._i += 1
                 chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
             elif self._begins_factor(token):
+                if self._is_along_field(chain[-1]):
+                    chain[-1] = self._applied(chain[-1])
+                    continue
                 self._refuse_behind(chain[-1], token)
                 last = self._found[self._i - 1]
                 group = self._found[self._i + 1 : self._i + 3] if token.kind == "open" else [token]
@@ -110,6 +113,20 @@ class Parser(SumCursor):
         if unit is not None and self._may_be_divided_by(unit, chain, divisor):
             raise Unread("without brackets, it is not clear what the slash divides by", slash.at)
         return Div(product_of(chain), divisor)
+
+    def _is_along_field(self, node: Node) -> bool:
+        """Return whether an expression is the sign of a derivative along a field, as in ``L_f h``, or a power of it."""
+        stem = node.base if isinstance(node, Pow) else node
+        stem = stem.arguments[0] if isinstance(stem, Call) and stem.function == "raised" else stem
+        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        return letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in words.FIELDS
+
+    def _applied(self, operator: Node) -> Node:
+        """Read what an operator is applied to, which may be another operator with its operand."""
+        operand, token = self._factor(), self._peek()
+        if token is not None and self._begins_factor(token) and self._is_along_field(operand):
+            operand = self._applied(operand)
+        return Call("applied", (operator, operand))
 
     def _signed_factor(self) -> Node:
         if self._is("-") or self._is("+"):
@@ -284,6 +301,8 @@ class Parser(SumCursor):
             return self._optimum(token)
         if name in ("frac", "tfrac", "dfrac", "cfrac"):
             above, below = self._group(), self._group()
+            if len(above) > 1 and len(below) > 1 and above[0].text == below[0].text == "delta":
+                return Call("variational", (self._inner(above[1:], token.at), self._inner(below[1:], token.at)))
             self._refuse_derivative(above, below, token.at)
             self._refuse_units(above, below)
             return Div(self._inner(above, token.at), self._inner(below, token.at))

@@ -84,6 +84,7 @@ class PlaceCursor(LetterCursor):
             or (len(places) == 1 and bool(bare) and bool(bare[0].index))
         )
         number = len(inside) == 1 and inside[0].kind == "number"
+        number |= inside[-1].text == "infty" and len(inside) < 3
         base = letters[0]
         scalar = len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
         factor = base == letter or (base and base.base.isupper() if letter.bold and letter.base.isupper() else scalar)
@@ -95,7 +96,10 @@ class PlaceCursor(LetterCursor):
             self._i = begin
             return ()
         known = self._reading.known.get(letter.name, set())
-        lapse = letter.base in LAPSED and _is_lapse(inside)
+        lapse = letter.base in LAPSED | {"delta", "H", "g", "h", "G"} and _is_lapse(inside)
+        varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
+        lapse |= inside[0].text in varied and len(inside) > 3 and inside[1].text in "+-"  # t + Delta t
+        lapse |= letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}  # the value at the next state
         argued = letter in map(Letter, ARGUED) and self._is_product(inside)
         related = bar_in(inside) >= 0 or not relation_in(inside).bare
         barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
@@ -116,13 +120,9 @@ class PlaceCursor(LetterCursor):
             divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
             divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
             transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
-            varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
-            shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
             step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
             step &= not any(t.text == "(" for t in inside)
-            step |= letter.base in "ghG" and _is_lapse(inside)
-            next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
-            a_place = turned or taken or order or transposed or next_state or shifted or step or divided
+            a_place = turned or taken or order or transposed or step or divided
             if a_place or letter.style == "cal":
                 self._refuse_argument(self._found[begin].at)
             self._i = begin

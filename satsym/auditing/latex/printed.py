@@ -18,7 +18,7 @@ from satsym.auditing.latex.words import (
     UPRIGHT,
 )
 
-_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to"}
+_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to", "=": "equal"}
 """Signs in an index -> their names."""
 
 

@@ -74,8 +74,6 @@ class RefusalCursor(OperatorCursor):
         stem = last.base if isinstance(last, Pow) else last
         stem = last.arguments[0] if isinstance(last, Call) and last.function == "raised" else stem
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
-        if letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in FIELDS:
-            raise Unread("derivatives along vector fields are not supported", token.at)
         applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)

@@ -91,7 +91,13 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
             end = group_end(found, i - 1)
             found = [*found[:i], *found[i : end - 1], *found[end:]]
-        elif token.kind == "open" and i + 1 < len(found) and found[i].text in SIGNS and found[i + 1].kind == "close":
+        elif (
+            token.kind == "open"
+            and i + 1 < len(found)
+            and found[i].text in SIGNS
+            and found[i + 1].kind == "close"
+            and not (kept and kept[-1].text in "^_")
+        ):
             kept.append(found[i])  # a sign in a group of its own
             i += 2
         elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
@@ -128,6 +134,7 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "macro" and token.text in CONNECTIVES and not depth:
             if any(t.kind in ("letter", "number") for t in found[i:]):  # else nothing follows it
                 kept.append(replace(token, text=REMARK))
+            i = _behind_variable(found, i) if token.text == "forall" else i
         elif kept and kept[-1].at == token.at - 1 and (joined := _JOINED.get((kept[-1].text, token.text))):
             kept[-1] = Token("macro", joined, kept[-1].at)
         elif token.kind == "macro" and token.text == "_":
@@ -149,6 +156,15 @@ def _bar_of(found: Sequence[Token], i: int) -> int:
                 k if found[k + 1].text in ("|", "vert", "rvert") and found[k + 2].text in "_^" and not fraction else 0
             )
     return 0
+
+
+def _behind_variable(found: Sequence[Token], i: int) -> int:
+    """Return the position after a letter that a space parts from the relation for all its values; else the same one."""
+    k = i + 1
+    while k + 1 < len(found) and found[k].text in ("_", "^"):
+        k = group_end(found, k + 1) if found[k + 1].kind == "open" else k + 2
+    space = k < len(found) and (found[k].text in ("~", "quad", "qquad", ":", ",") or found[k].text in SPACES)
+    return k + 1 if space and (found[i].kind == "letter" or found[i].text in GREEK) else i
 
 
 def _relation_under(found: Sequence[Token], i: int) -> Token | None:
@@ -284,5 +300,11 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     spoken = said.strip(" .,:;()").lower()
     if spoken.startswith("constant") or spoken == "otherwise":
         return False
-    worded = spoken in SAID | SHORT_WORDS or (plain and any(ord(c) > 0x3FF and c.isalpha() for c in spoken))
+    padded = inside[0].at > found[i].at + 1 or found[end - 1].at > inside[-1].at + len(inside[-1].text)
+    behind = found[end] if end < len(found) else None
+    between = bool(kept) and behind is not None and behind.kind in ("letter", "macro", "open")
+    between &= behind is not None and behind.text not in ("\\\\", "quad", "qquad", "text")
+    between &= any(t.text == "=" or t.text in RELATIONS for t in found[end:])  # another formula follows the word
+    worded = spoken in SAID | SHORT_WORDS or (plain and padded and between and len(spoken) > 2 and spoken not in UNITS)
+    worded |= plain and any(ord(c) > 0x3FF and c.isalpha() for c in spoken)
     return alone or several or worded or said.endswith(":") or (said[0] == "(" and said[-1] == ")")

@@ -88,7 +88,7 @@ def _refuse_arrow(line: Line) -> None:
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
         if sign == "unequal" and "unequal" in line.signs[:-1]:
             raise Unread("inequalities in chains of relations are not supported", (after or before)[0].at)
-        if sign == "tends" and len(line.signs) > 1:
+        if sign == "tends" and len(line.signs) > 1 and line.signs[:-1] != ["="] * (len(line.signs) - 1):
             raise Unread("arrows between more than two expressions are not supported", (after or before)[0].at)
 
 
@@ -199,7 +199,7 @@ def _goes_on(row: Sequence[Token]) -> bool:
 def _asks(row: Sequence[Token]) -> bool:
     """Return whether a line ends with the variables of an optimisation whose cost follows after a space."""
     for k in range(len(row) - 1, -1, -1):
-        if row[k].kind == "macro" and row[k].text in OPTIMA:
+        if row[k].kind == "macro" and row[k].text in (*OPTIMA, "lim"):
             end = group_end(row, k + 2) if k + 2 < len(row) and row[k + 2].kind == "open" else k + 3
             return end >= len(row)
     return False
@@ -251,6 +251,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         for listed in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
         for piece in ([listed[:1], listed[1:]] if _lacks_comma(listed) else [listed])
     ]
+    parts = [piece for part in parts for piece in _before_condition(part)]
     listed = any(token.text in ELLIPSES for token in found)
     listed |= any(len(part) == 3 and part[0].text in COUNTERS and part[1].text == "=" for part in parts)
     for before, after in pairwise(part for part in parts if part and not listed):
@@ -283,6 +284,18 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
 def _lacks_comma(part: Sequence[Token]) -> bool:
     """Return whether an ellipsis and the end of a list stand side by side, without a comma between them."""
     return len(part) == 2 and part[0].text in ELLIPSES and part[1].kind in ("letter", "number")
+
+
+def _before_condition(part: list[Token]) -> list[list[Token]]:
+    """Return a relation that ends with a number apart from the relation in brackets after it."""
+    depth = 0
+    for k in range(len(part) - 1, 1, -1):
+        depth += (part[k].text == ")") - (part[k].text == "(")
+        if depth <= 0:
+            apart = depth == 0 and k < len(part) - 1 and part[k - 1].kind == "number" and part[k - 2].text not in "_^"
+            inside = part[k + 1 : -1]
+            return [part[:k], inside] if apart and _has_relation(part[:k]) and relation_in(inside).signs else [part]
+    return [part]
 
 
 def _at_colons(found: Sequence[Token]) -> list[Token]:

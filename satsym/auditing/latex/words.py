@@ -29,7 +29,9 @@ STYLES = dict.fromkeys(
     "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
-UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
+UPRIGHT = frozenset(
+    "mathrm texttt textsl text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split()
+)
 SPACES = frozenset(
     ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
@@ -94,7 +96,7 @@ NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
     "skew".split()
 )
-NOT_COMPARED |= frozenset("given order between both equal times maps volume".split())
+NOT_COMPARED |= frozenset("given order between both equal times maps volume applied bracket variational".split())
 NOT_COMPARED |= frozenset("hessian transform open_interval binomial factorial".split())
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
 NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))

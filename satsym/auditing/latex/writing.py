@@ -207,7 +207,7 @@ class _Tex:
     def _value(self, arguments: Sequence[Node]) -> tuple[str, int]:
         first, *places = arguments
         others = self._listed(places)
-        if not isinstance(first, Sym):
+        if not isinstance(first, Sym) and not (isinstance(first, Call) and first.function == "bracket"):
             return rf"{self._bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
         inside = symbols(places[0]) if len(places) == 1 else set()
         counts = inside & COUNTERS and not any(calls_in(places[0]))  # the number of a member of a sequence
@@ -277,6 +277,12 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "maps": lambda tex, arguments: (
         rf"{tex._whole(arguments[0])} : {tex._whole(arguments[1])} \to {tex._whole(arguments[2])}",
         _SUM,
+    ),
+    "applied": lambda tex, arguments: (" ".join(tex._bound(part, _PRODUCT) for part in arguments), _PRODUCT),
+    "bracket": lambda tex, arguments: (rf"\left[{tex._listed(arguments)}\right]", _ATOM),
+    "variational": lambda tex, arguments: (
+        rf"\frac{{\delta {tex._whole(arguments[0])}}}{{\delta {tex._whole(arguments[1])}}}",
+        _ATOM,
     ),
     "order": lambda tex, arguments: (rf"\mathcal{{O}}\left({tex._whole(arguments[0])}\right)", _ATOM),
     "power": _Tex._any_power,
