@@ -16,6 +16,8 @@ from satsym.wording import printable
 CONSTANT = "constant"
 """Name of a constant of unspecified value: a quantity equated with it does not change in time."""
 
+MIXED_BRACKETS = "brackets of different kinds around an expression, as in a half-open interval, are not supported"
+
 
 @dataclass
 class Reading:
@@ -174,8 +176,8 @@ class Cursor(ABC):
             return list(self._found[self._i + 1 : self._i + 2])
         return list(self._found[self._i + 2 : group_end(self._found, self._i + 1) - 1])
 
-    def _bracket_end(self) -> int:
-        """Move past the bracket that closes the next opening bracket, and return its position."""
+    def _bracket_end(self, interval: bool = False) -> int:
+        """Move past the bracket that closes the next one, of an interval of any kind, and return its position."""
         opening, depth = self._take(), 1
         groups = 0
         while depth:
@@ -186,11 +188,8 @@ class Cursor(ABC):
             if groups == 0 and token.kind == "sign":
                 depth += (token.text in "([") - (token.text in ")]")
             self._i += 1
-        if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
-            raise Unread(
-                "brackets of different kinds around an expression, as in a half-open interval, are not supported",
-                opening.at,
-            )
+        if not interval and self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
+            raise Unread(MIXED_BRACKETS, opening.at)
         return self._i - 1
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import listed
+from satsym.auditing.latex.cursor import MIXED_BRACKETS, listed
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
@@ -139,9 +139,9 @@ class OperatorCursor(QuotientCursor):
         found = Call(name, tuple(arguments))
         return found if power is None else Pow(found, power)
 
-    def _arguments(self) -> list[Node]:
+    def _arguments(self, interval: bool = False) -> list[Node]:
         begin = self._i + 1
-        end = self._bracket_end()
+        end = self._bracket_end(interval)
         inside = self._found[begin:end]
         parts = split(inside, lambda token: token.text in (",", ";", "quad"))
         if any(token.text == "quad" for token in inside):
@@ -151,7 +151,11 @@ class OperatorCursor(QuotientCursor):
     def _bracket(self) -> Node:
         at, square = self._found[self._i].at, self._is("[")
         begin = self._i
-        arguments = self._arguments()
+        arguments = self._arguments(interval=True)
+        if self._found[self._i - 1].text != "])"[not square]:
+            if len(arguments) != 2 or self._peek() is not None:
+                raise Unread(MIXED_BRACKETS, at)
+            return Call("closed_open" if square else "open_closed", tuple(arguments))
         inner = arguments[0] if len(arguments) == 1 else None
         if len(arguments) == 1 and (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
             script = self._peek_group() if crossed.kind == "open" else [crossed]

@@ -69,6 +69,11 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         elif name in ("stackrel", "underset", "overset") and (rows := _stacked(found, i)):
             done += put_in(rows)
             i = group_end(found, group_end(found, i))
+        elif name in ("{", "lbrace") and (rows := _values_in_cases(done, found, i)):
+            done = done[:-1] if done[-1].text == "left" else done
+            done += put_in(rows)
+            i = _environment_end(found, i)
+            i += 2 if [t.text for t in found[i : i + 2]] == ["right", "."] else 0
         elif name == "substack" and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             inside = put_in(found[i + 1 : end - 1])
@@ -104,6 +109,30 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         else:
             done.append(token)
     return done
+
+
+def _environment_end(found: Sequence[Token], i: int) -> int:
+    """Return the position after the environment that begins at a position."""
+    depth = 0
+    for k in range(i, len(found)):
+        depth += (found[k].kind == "begin") - (found[k].kind == "end")
+        if depth == 0:
+            return k + 1
+    return len(found)
+
+
+def _values_in_cases(done: Sequence[Token], found: Sequence[Token], i: int) -> list[Token]:
+    """Return the rows after a brace behind an equals sign as cases; empty if they are anything else."""
+    before = [t.text for t in done if t.text not in ("left", "&", "\\,")][-1:]
+    if before != ["="] or i >= len(found) or found[i].kind != "begin" or found[i].text not in ("array", "aligned"):
+        return []
+    end = _environment_end(found, i)
+    begin = group_end(found, i + 1) if found[i].text == "array" and found[i + 1].kind == "open" else i + 1
+    closing = [t.text for t in found[end : end + 2]]
+    if closing[:1] == ["}"] or (closing[:1] == ["right"] and closing != ["right", "."]):
+        return []
+    first, last = replace(found[i], text="cases"), replace(found[end - 1], text="cases")
+    return [first, *found[begin : end - 1], last]
 
 
 def _stacked(found: Sequence[Token], i: int) -> list[Token]:

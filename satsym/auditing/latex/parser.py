@@ -310,6 +310,10 @@ class Parser(SumCursor):
             return called
         if name in ("d", "dd", "diff") and not self._is("("):
             return self._differential(token.at)
+        if name == "partial" and self._is("Omega", kind="macro"):
+            letter = self._letter()
+            assert letter is not None
+            return Call("boundary", (self._symbol(letter, token.at),))
         if name == "binom":
             return Call("binomial", (self._inner(self._group(), token.at), self._inner(self._group(), token.at)))
         if name in KEPT_GROUPS:

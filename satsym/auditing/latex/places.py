@@ -216,8 +216,9 @@ class PlaceCursor(LetterCursor):
 
 
 def _is_step(part: Sequence[Token]) -> bool:
-    """Return whether the tokens are a letter with a number added or subtracted, like the index of the next step."""
-    return [t.kind for t in part] == ["letter", "sign", "number"] and part[1].text in "+-"
+    """Return whether the tokens are a letter with a number or counter added or subtracted, like a later step."""
+    counts = len(part) == 3 and (part[2].kind == "number" or part[2].text in COUNTERS)
+    return counts and part[0].kind == "letter" and part[1].text in ("+", "-")
 
 
 def _is_lapse(part: Sequence[Token]) -> bool:

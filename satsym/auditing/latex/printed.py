@@ -67,7 +67,8 @@ class LetterCursor(Cursor):
         """Return whether a delta before a letter is a sign of variation; before two letters it is a factor."""
         if sign.text not in ("delta", "Delta"):
             return False
-        if token.kind == "letter" and self._is("(", 1):
+        timed = self._peek(2) is not None and self._found[self._i + 2].text in ("t", "k", "tau") and self._is(")", 3)
+        if token.kind == "letter" and self._is("(", 1) and not timed:
             raise Unread("this delta could be a difference or a factor in front of a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)

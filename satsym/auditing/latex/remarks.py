@@ -135,7 +135,7 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             if any(t.kind in ("letter", "number") for t in found[i:]):  # else nothing follows it
                 kept.append(replace(token, text=REMARK))
             i = _behind_variable(found, i) if token.text == "forall" else i
-        elif kept and kept[-1].at == token.at - 1 and (joined := _JOINED.get((kept[-1].text, token.text))):
+        elif kept and kept[-1].at == token.at - 1 and (joined := _joined(kept, token)):
             kept[-1] = Token("macro", joined, kept[-1].at)
         elif token.kind == "macro" and token.text == "_":
             kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
@@ -165,6 +165,22 @@ def _behind_variable(found: Sequence[Token], i: int) -> int:
         k = group_end(found, k + 1) if found[k + 1].kind == "open" else k + 2
     space = k < len(found) and (found[k].text in ("~", "quad", "qquad", ":", ",") or found[k].text in SPACES)
     return k + 1 if space and (found[i].kind == "letter" or found[i].text in GREEK) else i
+
+
+def _joined(kept: Sequence[Token], token: Token) -> str:
+    """Return the sign that the last token and the next one are printed for; empty if they are signs of their own.
+
+    A bar after the second one of a pair of bars stands alone.
+    """
+    depth = bars = norms = 0
+    for before in reversed(kept):
+        depth += (before.kind == "close") - (before.kind == "open")
+        if depth < 0 or (depth == 0 and before.kind == "sign" and before.text in "=&+-"):
+            break
+        bars += depth == 0 and before.kind == "sign" and before.text == "|"
+        norms += depth == 0 and before.kind == "macro" and before.text == "|"
+    closes = bars % 2 == 0 and norms % 2 == 0 and [t.text for t in kept[-2:-1]] != ["|"]
+    return "" if token.text == "|" and closes else _JOINED.get((kept[-1].text, token.text), "")
 
 
 def _relation_under(found: Sequence[Token], i: int) -> Token | None:

@@ -76,6 +76,8 @@ def _is_label(side: Sequence[Token]) -> bool:
 
 def _parted(line: Line) -> list[Line]:
     """Return the equations that are connected by an implication arrow as separate lines."""
+    if line.signs == ["tends"] * 3:  # what one quantity tends to follows from what another tends to
+        return [Line(line.sides[:2], ["tends"]), Line(line.sides[2:], ["tends"])]
     for k, sign in enumerate(line.signs):
         if sign == "tends" and "=" in line.signs[:k] and "=" in line.signs[k + 1 :]:
             first = Line(line.sides[: k + 1], line.signs[:k])

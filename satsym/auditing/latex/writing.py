@@ -46,6 +46,11 @@ _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argma
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
 _ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
 _ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
+_ENCLOSED |= {
+    "closed_open": (r"\left[", r"\right)"),
+    "open_closed": (r"\left(", r"\right]"),
+    "boundary": (r"\partial ", ""),
+}
 _ENCLOSED |= {"open_interval": (r"\left(", r"\right)")}
 _ENCLOSED |= {"braces": (r"\left\{", r"\right\}"), "angled": (r"\langle ", r" \rangle")}
 _BETWEEN = {
