@@ -175,7 +175,7 @@ def _joined(kept: Sequence[Token], token: Token) -> str:
     depth = bars = norms = 0
     for before in reversed(kept):
         depth += (before.kind == "close") - (before.kind == "open")
-        if depth < 0 or (depth == 0 and before.kind == "sign" and before.text in "=&+-"):
+        if depth < 0 or (depth == 0 and (before.text in ("=", "&", "+", "-") or before.text in RELATIONS)):
             break
         bars += depth == 0 and before.kind == "sign" and before.text == "|"
         norms += depth == 0 and before.kind == "macro" and before.text == "|"
