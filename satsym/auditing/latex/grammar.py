@@ -64,8 +64,8 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         refuse_spelled_name(line.sides)
         colon = bar_in(line.sides[0], colon=True) if line.signs == ["tends"] else -1
         if colon > 0 and line.sides[0][colon].text == ":":  # a function between two sets
-            sides = [line.sides[0][:colon], line.sides[0][colon + 1 :], line.sides[1]]
-            reading.statements.append(Call("maps", tuple(Parser(side, reading, start).side() for side in sides)))
+            parts = [line.sides[0][:colon], line.sides[0][colon + 1 :], line.sides[1]]
+            reading.statements.append(Call("maps", tuple(Parser(part, reading, start).side() for part in parts)))
             continue
         reading.differential = -1
         sides = [Parser(part, reading, start).side() for part in line.sides]

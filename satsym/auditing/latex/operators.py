@@ -384,7 +384,8 @@ def shows_transposition(terms: Sequence[Node]) -> bool:
         for k, name in enumerate(names[:-1]):
             if name.endswith("_prime") and names[k + 1][:1].isupper() and name.removesuffix("_prime") in names[k + 2 :]:
                 return True
-            base = factors[k].base if isinstance(factors[k], Pow) and constant(factors[k].exponent) == -1 else None
+            power = factors[k]
+            base = power.base if isinstance(power, Pow) and constant(power.exponent) == -1 else None
             if base is not None and names[k + 1].endswith("_prime") and base not in factors[k + 1 :]:
                 return True
         begins |= {names[0].removesuffix("_prime")} if names and names[0].endswith("_prime") else set()

@@ -26,8 +26,9 @@ _LINED = ("boxed", "fbox", "underline", "overline")
 """Macros that draw a line or frame at a whole relation."""
 _OVER = ("overset", "stackrel", "underset")
 """Macros that set a text above or below a sign."""
-_ITALIC = frozenset(("for", "where", "with", "when", "and", "if", "s.t.", "s.t", "such that", "subject to"))
+_ITALIC = frozenset(("for", "where", "with", "when", "and", "if", "s.t.", "s.t"))
 """Words that are recognised between formulas although they are set as letters."""
+_LONGEST_WORD = max(map(len, _ITALIC))
 _NARROW = (";", ":", ">", "~", "medspace", "thickspace")
 """Spaces that are too narrow to separate formulas."""
 REMARK = "remark"
@@ -172,6 +173,9 @@ def _joined(kept: Sequence[Token], token: Token) -> str:
 
     A bar after the second one of a pair of bars stands alone.
     """
+    joined = _JOINED.get((kept[-1].text, token.text), "")
+    if joined != "|":
+        return joined
     depth = bars = norms = 0
     for before in reversed(kept):
         depth += (before.kind == "close") - (before.kind == "open")
@@ -180,7 +184,7 @@ def _joined(kept: Sequence[Token], token: Token) -> str:
         bars += depth == 0 and before.kind == "sign" and before.text == "|"
         norms += depth == 0 and before.kind == "macro" and before.text == "|"
     closes = bars % 2 == 0 and norms % 2 == 0 and [t.text for t in kept[-2:-1]] != ["|"]
-    return "" if token.text == "|" and closes else _JOINED.get((kept[-1].text, token.text), "")
+    return "" if closes else joined
 
 
 def _relation_under(found: Sequence[Token], i: int) -> Token | None:
@@ -194,7 +198,11 @@ def _relation_under(found: Sequence[Token], i: int) -> Token | None:
 def _italic_word(found: Sequence[Token], i: int) -> int:
     """Return the position after a word between formulas that is set in letters; 0 if the letters spell none."""
     said, k = "", i
-    while k < len(found) and found[k].kind in ("letter", "sign") and found[k].at == found[i].at + k - i:
+    while (
+        k < min(len(found), i + _LONGEST_WORD)
+        and found[k].kind in ("letter", "sign")
+        and found[k].at == found[i].at + k - i
+    ):
         said, k = said + found[k].text, k + 1
         if said in _ITALIC and (k == len(found) or found[k].kind == "macro" or found[k].text in "~&"):
             return k
