@@ -23,22 +23,22 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	done
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/solve/* results/its-thesis/solve/* | sed 's/^/  /'
 
-test: lint  ## lint, run the tests (also that generated/ is what is derived), of the slowest ones a sample
+test: lint  ## check style and types, and run the tests (with a sample of the slow ones)
 	$(PYTEST)
 
-test-whole: lint  ## the same with every case of the slow tests
+test-whole: lint  ## the same with all slow tests
 	$(PYTEST) --whole
 
-test-versions:  ## try the oldest and the newest versions that pyproject.toml allows, in environments of their own
+test-versions:  ## test with the oldest and the newest dependencies that pyproject.toml allows, in separate environments
 	$(PYTHON) .ci/versions.py oldest newest
 
-test-processors: $(VENV)/installed-dev  ## the same verdicts with other kernels of OpenBLAS and NumPy (takes half an hour)
+test-processors: $(VENV)/installed-dev  ## compare verdicts with those of other OpenBLAS and NumPy kernels (takes half an hour)
 	$(BIN)/python -m tests.bench.processors
 
-parity: $(VENV)/installed-dev  ## the same answers as recorded, shipped and random (takes half an hour; ONLY="NAME ..." some, CASES=DIR more)
+parity: $(VENV)/installed-dev  ## compare solutions with recorded ones (takes half an hour; ONLY="NAME ..." selects instances, CASES=DIR adds some)
 	$(BIN)/python -m tests.bench.parity $(if $(CASES),--cases $(CASES)) $(if $(ONLY),--only $(ONLY))
 
-lint: $(VENV)/installed-dev  ## style, types, import floors
+lint: $(VENV)/installed-dev  ## check style, types and the layers of imports
 	$(BIN)/ruff check --quiet
 	$(BIN)/ruff format --check --quiet --diff || { echo "to apply this: make format"; exit 1; }
 	# it ends with 2 where a worker did not start within ten seconds, as on a busy machine
@@ -46,50 +46,50 @@ lint: $(VENV)/installed-dev  ## style, types, import floors
 	PYTHONPATH=. $(BIN)/lint-imports --no-cache --no-logo > $(VENV)/lint-imports.log || { cat $(VENV)/lint-imports.log; exit 1; }
 	echo "lint: clean"
 
-format: $(VENV)/installed-dev  ## let ruff put the style right
+format: $(VENV)/installed-dev  ## format the code with ruff
 	$(BIN)/ruff check --quiet --fix-only
 	$(BIN)/ruff format --quiet
 
-derive: $(VENV)/installed-dev  ## write generated/ from derivations/, and from the code the types of what it holds and docs/instances.md
+derive: $(VENV)/installed-dev  ## write generated/ from derivations/, and docs/instances.md and type stubs from the code
 	$(BIN)/satsym derive
 	$(BIN)/python -m satsym.codegen.protocol
 	$(BIN)/python -m satsym.report.terminal.keys
 
-check-derive: $(VENV)/installed-dev  ## fail if generated/ is not what derivations/ says
+check-derive: $(VENV)/installed-dev  ## fail if generated/ differs from what derivations/ gives
 	$(BIN)/satsym derive --check
 
-bench: $(VENV)/installed-bench  ## time satsym beside its peers
+bench: $(VENV)/installed-bench  ## compare the speed of satsym with that of other tools
 	$(BIN)/python tests/bench/run.py
 
 bench-returns: $(VENV)/installed-bench  ## solve 12,000 random returns to an orbit (takes hours)
 	$(BIN)/python tests/bench/returns.py
 
-bench-drift: $(VENV)/installed-bench  ## follow orbits for 10,000 revolutions by each propagator (takes minutes)
+bench-drift: $(VENV)/installed-bench  ## simulate orbits for 10,000 revolutions with each propagator (takes minutes)
 	$(BIN)/python tests/bench/drift.py
 
-bench-audit: $(VENV)/installed-dev  ## plant slips in what the documents print: how many are caught and named (takes minutes)
+bench-audit: $(VENV)/installed-dev  ## plant errors in printed formulas, and count how many are caught and named (takes minutes)
 	$(BIN)/python -m tests.bench.audit
 
-bench-truth: $(VENV)/installed-bench  ## random instances of all classes beside independent answers (takes hours)
+bench-truth: $(VENV)/installed-bench  ## compare random instances of all classes with independent solutions (takes hours)
 	$(BIN)/python -m tests.bench.truth.run
 
-bench-optima: $(VENV)/installed-bench  ## problems whose optima are known, beside a direct method (takes minutes)
+bench-optima: $(VENV)/installed-bench  ## compare problems with known optima with a direct method (takes minutes)
 	$(BIN)/python tests/bench/optima.py
 
 bench-proof: $(VENV)/installed-dev  ## prove the shipped instances and 100 random extremals, and write docs/proved.md (takes minutes)
 	$(BIN)/python -m tests.bench.proof
 
-bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes; TABLES="1 5" some)
+bench-batch: $(VENV)/installed-bench  ## compare solving many instances at once with loops in C, NumPy and CasADi (takes minutes; TABLES="1 5" selects tables)
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/bench/batch.py $(TABLES)
 
-bench-models: $(VENV)/installed-dev  ## derive, generate and load 2,000 random models, and plant slips in them (takes hours)
+bench-models: $(VENV)/installed-dev  ## derive, generate and load 2,000 random models, and plant errors in them (takes hours)
 	$(BIN)/python -m tests.bench.models --processes 2
 
-docs: $(VENV)/installed-docs  ## build the documentation into docs/_build, warnings being errors
+docs: $(VENV)/installed-docs  ## build the documentation in docs/_build, with warnings as errors
 	$(BIN)/python -m sphinx -q -W --keep-going docs docs/_build/html
 	echo "docs/_build/html/index.html"
 
-check-pages: $(VENV)/installed-pages docs  ## look for what keeps people from using the pages (axe, with the system's Chromium)
+check-pages: $(VENV)/installed-pages docs  ## check the accessibility of the pages (axe, with the system's Chromium)
 	$(BIN)/python .ci/pages.py
 
 clean:  ## remove the environment, results and caches

@@ -1,5 +1,5 @@
-"""What people write: the physics of each model, one file a family, and the ledgers of printed claims.
+"""Models and ledgers: a file of physics for each family of models, and the ledgers of printed claims.
 
-A file says where the satellite is, which forces act and what the control costs; ``satsym derive`` does
-the rest and writes ``generated/``. Reading a file derives nothing.
+People write these files; ``satsym derive`` reads them and writes ``generated/``. A file states the position of the
+satellite, the forces that act on it and the cost of the control. Importing it derives nothing.
 """

@@ -2,10 +2,11 @@
 
 The x axis points forward, the y axis opposite to the orbit normal, and the z axis towards the Earth; the orbital motion
 and the spin of the wheel are rotations about -y. The wheel is mounted in an inner gimbal, which turns about its own x
-axis, and this in an outer gimbal, which turns about the z axis of the body; the gimbals have no inertia. The panels
-have one flexible mode about each axis of the body, in which a part of the moment of inertia about that axis is elastic.
-I_x, I_y and I_z are the moments of inertia of the whole satellite, whose centre of mass stays in the orbit. Numbers
-that the paper lapan_pitch does not print, such as those of the gimbals and the panels, are typical values.
+axis. The inner gimbal is mounted in an outer gimbal, which turns about the z axis of the body. The gimbals have no
+inertia. The panels have one flexible mode about each axis of the body; a part of the moment of inertia about that axis
+belongs to it. I_x, I_y and I_z are the moments of inertia of the whole satellite, whose centre of mass stays in the
+orbit. Numbers that the paper lapan_pitch does not print, such as those of the gimbals and the panels, are typical
+values.
 """
 
 from typing import Any, TypeAlias

@@ -1,8 +1,8 @@
 """The pitch axis of a satellite with a reaction wheel: a motor spins the wheel up and thereby turns the body back.
 
-The pitch axis is normal to the orbit. The wheel and the orbital motion rotate about it in the negative sense. Its
-speed is relative to the body, as a tachometer measures it. I_y is the moment of inertia of the whole satellite, wheel
-included. The numbers are those of the paper audited in lapan_pitch, which gives none for the motor.
+The pitch axis is normal to the orbit. The wheel and the orbital motion rotate about it in the negative sense. The speed
+of the wheel is measured relative to the body, as by a tachometer. I_y is the moment of inertia of the whole satellite,
+including the wheel. The numbers are those of the paper audited in lapan_pitch, which gives no numbers for the motor.
 """
 
 from dataclasses import replace

@@ -1,7 +1,7 @@
 """A satellite in the plane of its orbit, in polar coordinates, thrusting radially and transversally.
 
-Everything is per unit mass. The reference is a circle of radius sigma with angular velocity omega. It is an orbit only
-if mu = sigma^3 omega^2; this relation therefore defines mu.
+All quantities are per unit mass. The reference is a circle of radius sigma with angular velocity omega. It is an orbit
+only if mu = sigma^3 omega^2; this relation therefore defines mu.
 """
 
 from dataclasses import replace

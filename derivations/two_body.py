@@ -1,7 +1,7 @@
 """A body attracted by a fixed centre, in Cartesian coordinates along inertial axes, with thrust in any direction.
 
-Everything is per unit mass. The centre is at rest: the mass of the body is negligible, or mu is the sum for both
-bodies.
+All quantities are per unit mass. The centre is at rest: either the mass of the body is negligible, or the position is
+relative to a second body and mu is the sum of the gravitational parameters of both.
 """
 
 from sympy import Matrix, eye

@@ -91,16 +91,16 @@ def _no_sweep(asked: Asked) -> str:
     """Explain why sweeps cannot solve an instance: they need costates at the final time, and meet no final state."""
     spec = asked.model.spec
     if asked.tf is None:
-        return 'time.tf: a free final time cannot be swept for; use method "collocation"'
+        return 'time.tf: the sweep method does not support a free final time; use method "collocation"'
     if asked.final:
         return (
-            f"a given final {', '.join(asked.final)} cannot be swept for; leave it free and weigh its error in the "
-            'terminal cost, or use method "collocation"'
+            f"a given final {', '.join(asked.final)} is not supported by the sweep method; leave it free and "
+            'penalise its error in the terminal cost, or use method "collocation"'
         )
     if asked.end_limits:
-        return f'a limit of the final {", ".join(asked.end_limits)} cannot be swept for; use method "collocation"'
+        return f'the sweep method does not support limits of the final {", ".join(asked.end_limits)}; use "collocation"'
     if spec.multipliers:
-        return f'terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
+        return f'the sweep method does not support the terminal constraints of {spec.name}; use method "collocation"'
     return ""
 
 
@@ -176,9 +176,9 @@ def refusal(name: str, asked: Asked) -> str:
         return f'solver.method: the model has {what}; use "{instead}"'
     if spec.switching and not (method.switching or method.constrained):
         return (
-            f'solver.method: the controls enter without a square and switch, which "{name}" cannot find; '
-            f'use "{instead}"'
+            "solver.method: the squares of the controls do not enter the cost, so the controls switch, which "
+            f'"{name}" does not support; use "{instead}"'
         )
     if method.switching and not (spec.switching or spec.throttled):
-        return f'solver.method: "{name}" is for controls that enter without a square; use "{instead}"'
+        return f'solver.method: "{name}" is for controls whose squares do not enter the cost; use "{instead}"'
     return method.refusal(asked)

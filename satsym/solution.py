@@ -66,7 +66,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Tell whether the value is within its limit; NaN is not."""
+        """Return whether the value is within its limit; a NaN never is."""
         return self.value <= self.limit
 
 
@@ -107,7 +107,7 @@ class Competitors:
 
     @property
     def unanswered(self) -> int:
-        """Return how many attempts led to no motion that reaches the final state."""
+        """Return the number of searches that found no motion to the final state."""
         return self.tried - self.solved
 
 
@@ -126,10 +126,10 @@ class Certificate:
     stationarity
         Largest relative difference of the control from the one that minimises H.
     hamiltonian_drift
-        Largest change of H along the flow, relative; ``None`` where time is explicit.
+        Largest relative change of H along the flow; ``None`` if H depends on time explicitly.
     legendre_clebsch
-        Smallest eigenvalue of H_uu; for controls that switch, that of its generalisation on singular arcs (NaN without
-        such arcs).
+        Smallest eigenvalue of H_uu; for controls that switch, the smallest value of the generalised condition on
+        singular arcs (NaN if there are none).
     conjugate_time
         The first conjugate time, or ``None``.
     checks

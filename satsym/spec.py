@@ -83,7 +83,7 @@ class Variable:
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
         if not self.latex.strip() or not _closed(self.latex):
-            raise ValueError(f"variable {self.symbol!r}: latex is {self.latex!r}; write its LaTeX, each {{ closed")
+            raise ValueError(f"variable {self.symbol!r}: latex is {self.latex!r}; write its LaTeX with matching braces")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
             raise ValueError(f"variable {self.symbol!r}: got the default {self.default!r}; give a finite number")
         if self.typical is not None:

@@ -52,7 +52,7 @@ def parse_quantity(text: str, unit: str) -> float:
     """
     match = _NUMBER.match(text) if len(text) <= MAX_LENGTH else None
     if match is None:
-        raise BadInput(f'{shown(text)} is not a number with a unit; write for instance "5 {_example(unit)}"')
+        raise BadInput(f'{shown(text)} is not a number with a unit; write, for instance, "5 {_example(unit)}"')
     if match.end() == len(text):
         raise BadInput(f"{shown(text)} has no unit; write {match[1]} without quotes, or add a unit after it")
     given, wanted = _unit(text[match.end() :]), _unit(unit)
@@ -68,7 +68,7 @@ def parse_quantity(text: str, unit: str) -> float:
         )
     value = _convert(float(match[1]), given, wanted)
     if not math.isfinite(value):
-        raise BadInput(f'{shown(text)} is out of range in "{unit}"; enter a smaller number')
+        raise BadInput(f'{shown(text)} is out of range in "{unit}"; give a smaller number')
     return value
 
 
@@ -238,10 +238,10 @@ def _named(name: str) -> Any:
         unit = registry.Unit(name)
         zero = registry.Quantity(0.0, unit).to_base_units().magnitude
     except (pint.PintError, ArithmeticError, AttributeError, TypeError, ValueError):
-        raise BadInput(f'unit "{name}" is unknown; write a name such as km, s, rad, deg, day') from None
+        raise BadInput(f'unit "{name}" is unknown; use a name such as km, s, rad, deg, day') from None
     if zero != 0.0:
         raise BadInput(
-            f'the scale of the unit "{name}" does not start at zero; write the quantity in an absolute unit such '
+            f'the scale of the unit "{name}" does not start at zero; give the quantity in an absolute unit such '
             "as kelvin"
         )
     return unit

@@ -1,1 +1,1 @@
-"""Problems of the literature whose optima are known, as anyone would state theirs."""
+"""Problems from the literature with known optima, stated as a user would state them."""

@@ -1,7 +1,7 @@
-"""The brachistochrone: along which curve a bead slides from one point to another in minimum time (Bernoulli, 1696).
+"""The brachistochrone: the curve along which a bead slides from point to point in minimum time (Bernoulli, 1696).
 
-The slope of the curve is the control. From (0, 10) to (10, 5) the curve is a cycloid, and the time with
-g = 9.80665 m/s^2 is 1.8016031225 s: x = a (phi - sin phi), y = 10 - a (1 - cos phi), t = phi sqrt(a / g).
+The slope of the curve is the control. From (0, 10) to (10, 5), it is the cycloid x = a (phi - sin phi), y = 10 - a (1 -
+cos phi), which is traversed with t = phi sqrt(a / g). With g = 9.80665 m/s^2, the time is 1.8016031225 s.
 """
 
 from sympy import cos, sin

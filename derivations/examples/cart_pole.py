@@ -1,7 +1,8 @@
 """A cart swings its pole up: from rest with the pole hanging to rest with the pole upright, a given distance away.
 
-Kelly, An introduction to trajectory optimization, SIAM Review 59 (2017), appendix E.1: a cart of 1 kg, a pole of 0.3 kg
-and 0.5 m, 1 m in 2 s, a force of at most 20 N, and the integral of its square as the cost.
+The data are those of Kelly, An introduction to trajectory optimization, SIAM Review 59 (2017), appendix E.1: a cart of
+1 kg, a pole of 0.3 kg and 0.5 m, a displacement of 1 m in 2 s, and a force of at most 20 N. The cost is the integral of
+the square of the force.
 """
 
 from sympy import cos, sin

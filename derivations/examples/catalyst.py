@@ -1,7 +1,8 @@
 """Two catalysts are mixed along a tubular reactor so that the yield of the product is maximal.
 
-Problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software with COPS 3.0, 2004), after Jackson
-(1968). The position along the reactor plays the part of time. The mixing ratio is one, then singular, then zero.
+This is problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software with COPS 3.0, 2004), after
+Jackson (1968). The position along the reactor takes the role of time. In the optimum, the mixing ratio is first one,
+then singular, then zero.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,7 +1,8 @@
 """A chain hangs between two points: its shape has minimum potential energy (Euler, 1744; COPS 3.0, problem 3).
 
-The slope of the chain is the control, and its length is a state. With length 4 between heights 1 and 3 at distance 1 it
-is a catenary, y = c cosh((x - m) / c) + d, whose three constants follow from the two ends and the length.
+The slope of the chain is the control, and its length is a state. With length 4, between heights 1 and 3 at a horizontal
+distance of 1, the shape is a catenary, y = c cosh((x - m) / c) + d, whose three constants follow from the two ends and
+the length.
 """
 
 from sympy import sqrt

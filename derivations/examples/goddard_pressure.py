@@ -1,9 +1,10 @@
-"""Goddard's rocket with bounded dynamic pressure: it throttles while the air is dense.
+"""Goddard's rocket with bounded dynamic pressure: the engine is throttled while the air is dense.
 
-The rocket and its data are those of ``goddard`` (COPS 3.0, problem 10), drag being dynamic pressure times an area: with
-the defaults a pressure of 10 is a drag of half the initial weight. Full thrust is followed by the boundary, a singular
-arc, and a coast; how long each lasts, and whether it occurs at all, follows from the bound (Seywald and Cliff, Goddard
-problem in presence of a dynamic pressure limit, Journal of Guidance, Control, and Dynamics 16, 1993).
+The rocket and its data are those of ``goddard`` (COPS 3.0, problem 10). Drag is dynamic pressure times an area; with
+the defaults, a pressure of 10 corresponds to a drag of half the initial weight. Full thrust is followed by a boundary
+arc, a singular arc, and a coast; the duration of each arc, and whether it occurs at all, depends on the bound (Seywald
+and Cliff, Goddard problem in presence of a dynamic pressure limit, Journal of Guidance, Control, and Dynamics 16,
+1993).
 """
 
 from sympy import exp

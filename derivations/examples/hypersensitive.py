@@ -1,8 +1,8 @@
-"""The hypersensitive problem: from one state to another over a long time, almost all of which is spent at rest.
+"""The hypersensitive problem: a state moves from one value to another over a long time, mostly staying near zero.
 
-Rao and Mease, Eigenvector approximate dichotomic basis method for solving hyper-sensitive optimal control problems,
-Optimal Control Applications and Methods 21 (2000): x' = -x^3 + u from 1 to 1.5. Errors in the canonical equations grow
-like exp(t) in either direction of time.
+The problem is that of Rao and Mease, Eigenvector approximate dichotomic basis method for solving hyper-sensitive
+optimal control problems, Optimal Control Applications and Methods 21 (2000): x' = -x^3 + u from 1 to 1.5. Errors in the
+canonical equations grow like exp(t) in either direction of time.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

@@ -1,7 +1,7 @@
 """Steering in a plane at constant acceleration: the linear tangent law (Bryson and Ho, Applied Optimal Control, 2.4).
 
-The example of Betts, Practical Methods for Optimal Control, 4.6: from rest to a height of 5 and a horizontal velocity
-of 45 in minimum time, with an acceleration of 100.
+The data are those of Betts, Practical Methods for Optimal Control, 4.6: the motion leads from rest to a height of 5 and
+a horizontal velocity of 45 in minimum time, with an acceleration of 100.
 """
 
 from sympy import cos, sin

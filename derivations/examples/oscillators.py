@@ -1,9 +1,9 @@
 """Two oscillators are damped at minimum cost: Van der Pol's with a bounded control, and Rayleigh's.
 
-The first is the example of CasADi (Andersson et al., Mathematical Programming Computation 11, 2019): from (0, 1) in a
-time of 10 with u in [-0.75, 1]. The second is a tunnel-diode circuit (Jacobson and Mayne, Differential Dynamic
-Programming, 1970; Maurer and Augustin, in Online Optimization of Large Scale Systems, 2001), from (-5, -5) in a time of
-4.5, with and without the mixed constraint u + x1/6 <= 0.
+The first is the example of CasADi (Andersson et al., Mathematical Programming Computation 11, 2019): the motion starts
+from (0, 1) and lasts 10, with u in [-0.75, 1]. The second is a tunnel-diode circuit (Jacobson and Mayne, Differential
+Dynamic Programming, 1970; Maurer and Augustin, in Online Optimization of Large Scale Systems, 2001). Its motion starts
+from (-5, -5) and lasts 4.5, with and without the mixed constraint u + x1/6 <= 0.
 """
 
 from dataclasses import replace

@@ -1,8 +1,8 @@
 """Minimum-time rest-to-rest reorientation of a rigid body, with a torque about each axis.
 
-Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of Guidance, Control, and
-Dynamics 16 (1993): moments of inertia and maximum torques are one, and the body turns by 180 degrees about its third
-axis. A rotation about that axis alone does not take the minimum time.
+The problem is that of Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of
+Guidance, Control, and Dynamics 16 (1993): moments of inertia and maximum torques are one, and the body turns by 180
+degrees about its third axis. A rotation about that axis alone does not take the minimum time.
 """
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of

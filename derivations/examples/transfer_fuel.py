@@ -2,8 +2,8 @@
 
 Mass decreases in proportion to the magnitude of the thrust. The optimum alternates between arcs of full thrust and
 coasts, as the primer vector determines (Lawden, Optimal Trajectories for Space Navigation, 1963). Lengths are in units
-of the radius of the first orbit, times in units of the time in which a satellite on it moves through one radian, and
-the initial mass is one.
+of the radius of the first orbit, times in units of the time in which a satellite on that orbit moves through one
+radian; the initial mass is one.
 """
 
 from sympy import sqrt

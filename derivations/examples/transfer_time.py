@@ -1,8 +1,8 @@
 """Transfer from one circular orbit to another in minimum time, with constant thrust in a free direction.
 
-The mass flow rate is constant, so that the mass is a known function of time. The data are those of the transfer from
-the Earth's orbit to that of Mars (Bryson and Ho, Applied Optimal Control, 2.5). Lengths are in units of the radius of
-the first orbit, times in units of the time in which a satellite on it moves through one radian.
+The mass flow rate is constant, so the mass is a known function of time. The data are those of the transfer from the
+Earth's orbit to that of Mars (Bryson and Ho, Applied Optimal Control, 2.5). Lengths are in units of the radius of the
+first orbit, times in units of the time in which a satellite on that orbit moves through one radian.
 """
 
 from sympy import cos, sin

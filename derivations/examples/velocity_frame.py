@@ -1,7 +1,7 @@
 """Axes aligned with the velocity of a satellite on a Kepler orbit, and their angular velocity.
 
 The orbit is a conic of eccentricity e; its motion follows from the angular momentum alone. The velocity makes the
-flight path angle beta with the local horizontal, so that the axes rotate through the angle f - beta.
+flight path angle beta with the local horizontal, so the axes rotate through the angle f - beta.
 """
 
 from sympy import atan, cos, sin, sqrt

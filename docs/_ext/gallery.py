@@ -28,7 +28,7 @@ COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\
 WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
 HEAD = f"""{WRITTEN}# Gallery
 
-Every shipped instance, by subject. Each page shows the problem, the code, the pictures, and everything that the command
+The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and everything that the command
 prints, including the certificate.
 """
 COMMANDS = {
@@ -151,7 +151,7 @@ def page(known: dict[str, Any], root: Path) -> str:
     """The page of one instance."""
     name, model = known["name"], known["model"]
     motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
-    motion = f"{motion}\n\n" if motion else "The equations are long; the derivation below has them.\n\n"
+    motion = f"{motion}\n\n" if motion else "The equations are long; they are in the derivation below.\n\n"
     alone = "--lang id" if known["command"] in ("lqr", "analyse", "compare") else "--json"
     python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
     call = python.get(known["command"], "found = satsym.analyse")
@@ -161,12 +161,12 @@ def page(known: dict[str, Any], root: Path) -> str:
         "Back to the [gallery](../gallery.md).\n",
         *(f"{picture(known, part)}\n" for part in known["pictures"]),
         f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
-        f"The instance `{name}` sets the numbers:\n\n```toml\n{narrow(known['file'])}\n```\n",
+        f"The instance `{name}` provides the numerical values:\n\n```toml\n{narrow(known['file'])}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
         f"## What it prints\n\n```text\n{known['text']}\n```\n",
         f"## Derivation\n\nEvery step is typeset in {{download}}`{model}.tex <../../generated/{model}.tex>`; "
-        f"`satsym latex {model}` writes it anew, and the physics is stated in "
+        f"`satsym latex {model}` writes this file; the physics is stated in "
         f"{{download}}`{known['source']} <../../{known['source']}>`.\n",
     ]
     return "\n".join(filter(None, parts))

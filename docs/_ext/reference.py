@@ -12,11 +12,11 @@ GROUPS = {
     "Instances and solutions": (
         "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve export"
     ),
-    "What a solution is worth": "solution.Certificate solution.Check solution.Competitors prove",
+    "Certificates and proofs": "solution.Certificate solution.Check solution.Competitors prove",
     "Many instances": "study front.studies.Study solvers.repeated.Repeated",
     "Linear systems and orbits": "analyse lqr front.analysing.Analysis front.analysing.Regulator",
     "Derivations": "derive front.derivation.Derivation front.derivation.Equation check audit front.auditing.Audit",
-    "Stating a model": "Variable FirstOrder Newton Problem Free Box Ball Annulus Angle",
+    "Defining a model": "Variable FirstOrder Newton Problem Free Box Ball Annulus Angle",
 }
 """Names in satsym, and in its modules, by what they are for."""
 SHOWN_WHOLE = list(GROUPS)[:-1]

@@ -51,7 +51,7 @@ def nodes_of(instance: Instance) -> Array:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a driven motion requires a final time; enter a number")
+        raise BadInput(f"{instance.called}: time.tf: a driven motion requires a final time; give a number")
     return Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
 
 

@@ -42,8 +42,8 @@ def find(name: str) -> Instance | Kernels:
         return kernels.load(name)
     instead = suggestion(name, [*instance.shipped(), *kernels.shipped()])
     raise BadInput(
-        f"{printable(name)}: no instance and no model of this name; {instead} (`satsym instances` and `satsym models` "
-        "list all; or give the path of a TOML file)"
+        f"{printable(name)}: there is no instance or model of this name; {instead} (`satsym instances` and `satsym "
+        "models` list all; or give the path of a TOML file)"
     )
 
 

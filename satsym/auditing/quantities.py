@@ -98,7 +98,7 @@ def printed_number(text: str) -> PrintedNumber:
     text = text.removeprefix(ROUNDED)
     match = _PRINTED.match(text)
     if match is None or not (match["whole"] or match["part"]):
-        raise BadInput(f'{shown(text)} is not a number with a unit; write for instance "35786 km"')
+        raise BadInput(f'{shown(text)} is not a number with a unit; write, for instance, "35786 km"')
     part, power = match["part"], int(match["power"] or 0)
     digits = f"{match['whole']}{part or ''}"
     if len(digits) > MAX_DIGITS:

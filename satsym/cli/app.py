@@ -37,8 +37,8 @@ Start here:
 
 \b
 Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no solution,
-5 certificate fails, 6 generated files are stale, 1 anything unforeseen
-(SATSYM_DEBUG=1 shows where that was).
+5 certificate fails, 6 generated files are stale, 1 unexpected error
+(set SATSYM_DEBUG=1 to see where it occurred).
 
 `satsym COMMAND --help` has examples."""
 
@@ -130,7 +130,7 @@ class Program(Explained, click.Group):
 @language_option
 @click.version_option(__version__, message="satsym %(version)s")
 def program() -> None:
-    """Derive, solve, typeset and audit satellite optimal control."""
+    """Derive, solve, typeset and audit the optimal control of satellites."""
 
 
 def run(argv: Sequence[str] | None = None) -> int:

@@ -69,7 +69,7 @@ language_option = click.option(
     expose_value=False,
     is_eager=True,
     callback=_spoken,
-    help=f"Language of the output; by default that of {said.VARIABLE}, or English.",
+    help=f"Language of the output; by default the one that {said.VARIABLE} names, or English.",
 )
 
 
@@ -105,7 +105,7 @@ def shared_options(command: Any) -> Any:
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-long_option = click.option("--long", "whole", is_flag=True, help="List the details as well, in one table.")
+long_option = click.option("--long", "whole", is_flag=True, help="List all entries in one table, with their details.")
 subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))
 trajectory_option = place_option(
     "--out",
@@ -129,7 +129,7 @@ set_option = click.option(
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the options of pictures, as ``look``, to a command with results in a folder of its name."""
     drawn = click.option(
-        "--plot", is_flag=True, help=f"Draw pictures as well. Without --out, all files go into results/NAME/{command}."
+        "--plot", is_flag=True, help=f"Also draw pictures. Without --out, all files go into results/NAME/{command}."
     )
 
     def decorated(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -170,7 +170,7 @@ _size_option = click.option(
     "--size",
     metavar="SIZE",
     type=click.Choice(tuple(SIZES)),
-    help=f"Size of the pictures: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
+    help=f"Size of the pictures: {', '.join(f'{name} ({what})' for name, what in SIZES.items())}.",
 )
 _title_option = click.option(
     "--no-title", "untitled", is_flag=True, help="Leave out the titles, for pictures that have a caption."

@@ -56,7 +56,7 @@ def refuse_other_versions() -> None:
             raise BadInput(
                 f"{pinned.name} {version} is installed, but generated/ must be written with version "
                 f"{pinned.name}{pinned.versions}; install that version (pip install "
-                f"'{pinned.name}{pinned.versions}'), or derive elsewhere with --out DIR"
+                f"'{pinned.name}{pinned.versions}'), or derive into another folder with --out DIR"
             )
 
 

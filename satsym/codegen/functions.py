@@ -107,7 +107,7 @@ def functions(derivation: Derivation) -> list[Function]:
     if derivation.model.reference:
         found.append(_vector("reference", "The reference curve c(t).", "t p", derivation.rhs("reference")))
     if "conserved" in derivation:
-        summary = "What the uncontrolled motion keeps constant."
+        summary = "Conserved quantities of the uncontrolled motion."
         found.append(_vector("invariants", summary, "t x p", derivation.rhs("conserved")))
     particle, strength = derivation.model.particle(), strength_of(derivation)
     if particle:
@@ -117,12 +117,12 @@ def functions(derivation: Derivation) -> list[Function]:
         found.append(_vector("inertial_state", summary, "t x p", inertial_state(particle, strength)))
     if "quantities" in derivation:
         known = resolved(derivation.step("quantities").equations)
-        summary = "What is derived along the motion besides."
+        summary = "Further quantities, derived along the motion."
         found.append(_vector("quantities", summary, "t x u p", sp.Matrix(list(known.values()))))
     if "balance" in derivation:
         kept, rates = derivation.step("momenta").equations[-1:], derivation.step("balance").equations
         pairs = sp.Matrix([side for e, rate in zip(kept, rates, strict=True) for side in (e.rhs, rate.rhs)])
-        summary = "What changes only from outside, each with its rate of change."
+        summary = "Quantities that only external influences change, each followed by its rate of change."
         found.append(_vector("balances", summary, "t x u p", pairs))
     return found + (_cost_functions(derivation) if derivation.problem else [])
 
@@ -162,7 +162,7 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
         _scalar("terminal_cost", "Terminal cost S.", "t x p", problem.terminal_cost),
         _vector(
             "terminal_gradient",
-            "S_x: the costates at the final time where the final state is free.",
+            "S_x, the costates at the final time for states whose final values are free.",
             "t x p",
             sp.Matrix([e.rhs for e in conditions[n : 2 * n]]),
         ),
@@ -186,9 +186,21 @@ def _of_interior(derivation: Derivation) -> list[Function]:
     stated = sp.Matrix(list(interior.named(derivation.problem).values()))
     by_state = stated.jacobian(symbols_of(derivation.model.states))
     return [
-        _vector("interior", "What vanishes at waypoints, those of the first one first.", "t x p", stated),
-        _matrix("interior_gradient", "Its derivatives by the states, row by row.", "t x p", by_state),
-        _vector("interior_drift", "Its derivatives by time.", "t x p", stated.diff(t)),
+        _vector(
+            "interior", "Expressions that vanish at the waypoints, in the order of the waypoints.", "t x p", stated
+        ),
+        _matrix(
+            "interior_gradient",
+            "Derivatives of the expressions at the waypoints with respect to the states, row by row.",
+            "t x p",
+            by_state,
+        ),
+        _vector(
+            "interior_drift",
+            "Derivatives of the expressions at the waypoints with respect to time.",
+            "t x p",
+            stated.diff(t),
+        ),
     ]
 
 
@@ -210,22 +222,37 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
     g = sp.Matrix([one.rates[0] for one in found])
     on_boundary = "t x u lam p bounds"
     return [
-        _vector("path_constraints", "What may not be positive along the way.", "t x u p bounds", g),
-        _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x u p", g.jacobian(states)),
-        _matrix("path_effect", "Its derivatives by the controls, row by row.", "t x u p", g.jacobian(controls)),
+        _vector("path_constraints", "Path constraints: expressions that must not be positive.", "t x u p bounds", g),
+        _matrix(
+            "path_gradient",
+            "Derivatives of the path constraints with respect to the states, row by row.",
+            "t x u p",
+            g.jacobian(states),
+        ),
+        _matrix(
+            "path_effect",
+            "Derivatives of the path constraints with respect to the controls, row by row.",
+            "t x u p",
+            g.jacobian(controls),
+        ),
         _matrix(
             "path_rates",
-            "Its first and second rates of change; 0 for those after the control.",
+            "First and second rates of change of the path constraints; 0 beyond the order of each.",
             "t x u p",
             sp.Matrix(rates),
         ),
         _matrix(
             "path_vanishing",
-            "What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row.",
+            "Further expressions that vanish on the boundary, or at its entry and exit, with their rates, row by row.",
             on_boundary,
             sp.Matrix(vanishing),
         ),
-        _vector("path_multiplier", "The multiplier of each while it is on its boundary.", on_boundary, multiplier),
+        _vector(
+            "path_multiplier",
+            "The multiplier of each path constraint while the motion is on its boundary.",
+            on_boundary,
+            multiplier,
+        ),
         *([] if path_constraints.stationary(derivation) else [_boundary_control(derivation, found, stated)]),
     ]
 
@@ -248,7 +275,7 @@ def _boundary_control(
             none | {f"{name}_{u.name}": tidy(value.xreplace({u: sp.Integer(0)})) for name, u, value in kept} | stated
         )
     laws = [[stated[f"{one.name}_{u.name}"] for u in controls] for one in found]
-    summary = "The controls on the boundary of each, row by row."
+    summary = "The controls on the boundary of each path constraint, row by row."
     return _matrix("boundary_control", summary, "t x lam p bounds", sp.Matrix(laws))
 
 
@@ -260,7 +287,7 @@ def _switching_laws(derivation: Derivation) -> list[Function]:
         ),
         _matrix(
             "extremal_jacobian",
-            "Rates of states and costates by states and costates, row by row, the controls being held.",
+            "Derivatives of the rates of states and costates with respect to these, at fixed controls, row by row.",
             "t x u lam p",
             switching.extremal_jacobian(derivation),
         ),
@@ -301,7 +328,7 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     if product.STEP in derivation and "smoothed_law" in derivation:
         found.append(_regularised_cost(derivation))
         if slopes := set_laws.throttle_slopes(derivation):
-            summary = "How H changes with the norm of each vector that may be none, along its best direction."
+            summary = "Derivative of H with respect to the norm of each vector that may be zero, in its best direction."
             found.append(_vector("throttle_slope", summary, "t x lam p bounds", sp.Matrix(slopes)))
     return found
 

@@ -51,8 +51,16 @@ def _deviations(derivation: Derivation) -> list[Function]:
     exact, summary = derivation.rhs("deviation_equations"), "Exact rates of change of the deviations."
     return [
         Function("deviation_dynamics", summary, ("t", "x", "u", "p"), exact, "vector"),
-        Function("original_state", "The original states at a deviation.", ("t", "x", "p"), back, "vector"),
-        Function("deviation_state", "The deviation at original states.", ("t", "original", "p"), there, "vector"),
+        Function(
+            "original_state", "The original states as functions of the deviations.", ("t", "x", "p"), back, "vector"
+        ),
+        Function(
+            "deviation_state",
+            "The deviations as functions of the original states.",
+            ("t", "original", "p"),
+            there,
+            "vector",
+        ),
     ]
 
 
@@ -85,7 +93,7 @@ def _feedback(derivation: Derivation) -> list[Function]:
     found = [_polynomial("closed_loop_polynomial", "det(s I - A + B K), highest power first.", "gain p", coefficients)]
     if column := _regular_column(coefficients):
         summary = (
-            "First column of the Routh array of the closed loop; not finite where an element but the last vanishes."
+            "First column of the Routh array of the closed loop; not finite if an element other than the last vanishes."
         )
         found.append(_polynomial("closed_loop_routh", summary, "gain p", column))
     if m <= MOST_INPUTS:

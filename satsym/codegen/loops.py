@@ -324,7 +324,7 @@ def kicks_and_drifts(code: Code, of: Split, constants: Sequence[Assignment]) -> 
         *(f"    {line}" for line in _assigned([*arrival.items(), *zip(slopes, pull, strict=True)])),
         *(f"{at[y]}[{steps}] = {y}" for y in states),
     ]
-    summary = '"""Kicks and drifts of sixth order over the nodes from x0 at times[0], without control."""'
+    summary = '"""Symplectic integration of order six over the nodes from x0 at times[0], without control."""'
     return "\n".join(["def symplectic(times, x0, p, x):", *(f"    {line}" for line in (summary, *lines)), ""])
 
 

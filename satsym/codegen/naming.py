@@ -52,28 +52,29 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
         ),
         Function(
             "canonical_jacobian",
-            "The canonical rates by states and costates, row by row.",
+            "Derivatives of the canonical rates with respect to states and costates, row by row.",
             ("t", "x", "lam", "p", "bounds"),
             law.jacobian(rates, z),
             "matrix",
         ),
         Function(
             "canonical_drift",
-            "The canonical rates by explicit time.",
+            "Derivatives of the canonical rates with respect to explicit time.",
             ("t", "x", "lam", "p", "bounds"),
             law.jacobian(rates, (s.t,)),
             "vector",
         ),
         Function(
             "boundary",
-            "Residuals at the final time: for each state (its end or its transversality), each constraint, the time.",
+            "Residuals at the final time, one for each state (final value or transversality), each constraint and "
+            "the time.",
             ("t", "x", "lam", "nu", "p", "bounds", "final"),
             ends,
             "vector",
         ),
         Function(
             "boundary_jacobian",
-            "The boundary residuals by states, costates, multipliers and final time, row by row.",
+            "Derivatives of the boundary residuals by states, costates, multipliers and final time, row by row.",
             ("t", "x", "lam", "nu", "p", "bounds", "final"),
             law.jacobian(ends, unknown),
             "matrix",

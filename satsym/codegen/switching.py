@@ -47,9 +47,14 @@ def vectors(derivation: Derivation) -> list[Entry]:
     controls = names(derivation.model.controls)
     rates = [derivation.equation(f"switching_rate.{u}").rhs for u in controls]
     return [
-        Entry("switching_function", "What multiplies each control in H.", "t x lam p", sp.Matrix(found.switching)),
-        Entry("switching_rate", "Its rates of change along an extremal.", "t x u lam p", sp.Matrix(rates)),
-        Entry("magnitude_weight", "What multiplies each |u| in H.", "t x lam p", sp.Matrix(found.weights)),
+        Entry("switching_function", "The coefficient of each control in H.", "t x lam p", sp.Matrix(found.switching)),
+        Entry(
+            "switching_rate",
+            "Rates of change of the switching functions along an extremal.",
+            "t x u lam p",
+            sp.Matrix(rates),
+        ),
+        Entry("magnitude_weight", "The coefficient of each |u| in H.", "t x lam p", sp.Matrix(found.weights)),
         Entry(
             "control_law",
             "The controls that minimise H over the box.",
@@ -73,24 +78,24 @@ def curve(derivation: Derivation) -> list[Entry]:
     return [
         Entry(
             "beyond_switching_curve",
-            "How far the position lies beyond the switching curve of least time.",
+            "Distance of the position from the switching curve for minimum time.",
             arguments,
             sp.Matrix([beyond]),
         ),
         Entry(
             "feedback_law",
-            "The controls of least time, by the side of the switching curve.",
+            "The minimum-time controls, by the side of the switching curve on which the state lies.",
             arguments,
             sp.Matrix([law]),
             (control,),
         ),
         Entry(
             "transition_time",
-            "How long the change of position takes from rest to rest.",
+            "Duration of the change of position from rest to rest.",
             arguments,
             sp.Matrix([stated["duration"]]),
         ),
-        Entry("first_arc_time", "How long the first arc of it takes.", arguments, sp.Matrix([first])),
+        Entry("first_arc_time", "Duration of the first arc of this change of position.", arguments, sp.Matrix([first])),
     ]
 
 

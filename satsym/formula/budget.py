@@ -47,7 +47,7 @@ LEDGER = 600_000_000
 """Limit of calls for all rows of one ledger together; uny_thesis takes 58 million."""
 
 
-_ADVICE = "write it shorter, or split it into rows"
+_ADVICE = "shorten it, or split it into several rows"
 
 
 class OverBudget(BadInput):
@@ -77,7 +77,7 @@ class Account:
         """Return what was exceeded, for people; empty where nothing was."""
         if self.calls < 0:
             return f"takes more than {self.limit.calls:,} operations; {_ADVICE}"
-        return f"makes more than {self.limit.numbers:,} numbers; {_ADVICE}" if self.numbers < 0 else ""
+        return f"produces more than {self.limit.numbers:,} numbers; {_ADVICE}" if self.numbers < 0 else ""
 
     def profile(self, frame: FrameType, event: str, argument: object) -> None:
         """Count a call or a return, announced by the interpreter."""
@@ -156,7 +156,7 @@ class Allowance:
         if not self.counted:
             return work()
         if self.left <= 0:
-            raise OverBudget(f"the rows before it took {LEDGER:,} operations; judge single rows with --item")
+            raise OverBudget(f"the preceding rows took {LEDGER:,} operations; check single rows with --item")
         return within(replace(limit, calls=min(limit.calls, self.left)), work, self._spent)
 
     def _spent(self, calls: int) -> None:

@@ -133,14 +133,14 @@ class Point:
     def _square_root(self, base: int) -> int:
         unit, size = _split(base, _TWO_PART)
         if unit != 1 and (self.strict or unit != PRIME - 1):
-            raise NoValue("the root of what is not positive")
+            raise NoValue("the square root of a number that is not positive")
         root = pow(size, (_ODD + 1) // 2, PRIME)
         return root if unit == 1 else root * IMAGINARY % PRIME
 
     def _cube_root(self, base: int) -> int:
         unit, size = _split(base, _THREE_PART)
         if unit != 1:
-            raise NoValue("the cube root of what is not positive")
+            raise NoValue("the cube root of a number that is not positive")
         return pow(size, pow(3, -1, (PRIME - 1) // _THREE_PART), PRIME)
 
     def value_of_call(self, node: Call) -> int:
@@ -194,7 +194,7 @@ class Point:
         for key, (real, imaginary) in terms.coefficients.items():
             if key == HALF_TURNS:
                 if real or (2 * imaginary).denominator != 1:
-                    raise Nowhere("an angle that is not a multiple of a right one")
+                    raise Nowhere("an angle that is not a multiple of a right angle")
                 product = product * pow(IMAGINARY, int(2 * imaginary), PRIME) % PRIME
                 continue
             for kind, fraction in (("grows", real * PARTS), ("turns", imaginary * PARTS)):

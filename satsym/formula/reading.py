@@ -46,7 +46,7 @@ _OF_LIBRARIES = {"np.sqrt": "sqrt", "np.linalg.norm": "norm"}
 
 _FOREIGN = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n]""")
 _FOREIGN_TO_RELATIONS = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n<>!]""")
-_TOO_DEEP = f"brackets or signs are nested more than {MAX_DEPTH} deep; write it flatter"
+_TOO_DEEP = f"brackets or signs are nested more than {MAX_DEPTH} levels deep; split the formula"
 _QUOTED = re.compile(r"""'[ !-&(-\[\]-~]*'|"[ !#-\[\]-~]*\"""")
 """Printable characters in quotes, without quotes and backslashes."""
 _SIGNS = re.compile(r"[-+](?:[ \n]*[-+]){3}")
@@ -68,7 +68,7 @@ _WORDS = {
     ast.ListComp: "a comprehension",
     ast.GeneratorExp: "a comprehension",
     ast.JoinedStr: "a formatted text",
-    ast.Call: "calling what is not a plain name",
+    ast.Call: "a call of something other than a name",
 }
 
 
@@ -171,7 +171,7 @@ def parsed(line: str, text: str, what: str) -> ast.expr:
         If it is no expression.
     """
     if not line:
-        raise BadInput(f"is empty; write {what}")
+        raise BadInput(f"is empty; give {what}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -89,11 +89,11 @@ class Scales:
 
     def _refuse(self, found: Weight) -> None:
         if found.terms > self.max_terms or found.digits > MAX_DIGITS or found.degree > MAX_DEGREE:
-            raise OverBudget("is too large once multiplied out; split it into parts, or use smaller exponents")
+            raise OverBudget("is too large when multiplied out; split it into parts, or use smaller exponents")
         if found.nodes > MAX_NODES:
-            raise OverBudget(f"has more than {MAX_NODES} parts once abbreviations are put in; split it")
+            raise OverBudget(f"has more than {MAX_NODES} parts after abbreviations are replaced; split it")
         if found.depth > MAX_DEPTH:
-            raise OverBudget(f"is nested more than {MAX_DEPTH} deep once abbreviations are put in; write it flatter")
+            raise OverBudget(f"is nested more than {MAX_DEPTH} levels deep after abbreviations are replaced; split it")
 
 
 def _weight(node: Node, parts: Sequence[Weight], max_terms: int) -> Weight:
@@ -169,7 +169,7 @@ def _refuse_argument(function: str, parts: Sequence[Weight], number: bool) -> No
         return
     limit = MAX_CONSTANT_ARGUMENT if number and function in _GROWING else MAX_ARGUMENT
     if not parts[0].largest <= limit:
-        raise OverBudget(f"takes {function}(...) of numbers larger than {limit:.0e}; write it with smaller ones")
+        raise OverBudget(f"takes {function}(...) of numbers larger than {limit:.0e}; use smaller numbers")
 
 
 def _float(value: Fraction) -> float:

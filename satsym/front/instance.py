@@ -216,7 +216,5 @@ def _kernels(model: Any) -> Kernels | None:
 def _checked(name: str) -> str:
     """Return a name after checking that result files can have this name."""
     if not isinstance(name, str) or not _NAME.match(name):
-        raise BadInput(
-            f"name: {shown(name)} is not a valid name of an instance; write letters, digits, hyphens and dots"
-        )
+        raise BadInput(f"name: {shown(name)} is not a valid name of an instance; use letters, digits, hyphens and dots")
     return name

@@ -134,7 +134,7 @@ class Result(ABC, Generic[Found]):
 
     @property
     def status(self) -> Status:
-        """Return how the run ended."""
+        """Return the status, which says how the run ended."""
         return self.found.status
 
     @property

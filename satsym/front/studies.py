@@ -114,7 +114,7 @@ def study(
         Function that returns an object like ``concurrent.futures.Executor``, which computes in place of these
         processes; at most `workers` calls are submitted to it at a time.
     progress
-        Called after each chunk with the progress of the study.
+        Function that is called with the progress of the study after each chunk.
 
     Raises
     ------

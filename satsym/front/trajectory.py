@@ -17,7 +17,7 @@ from satsym.solution import Invariant, Simulation
 
 
 class Trajectory(Result[Simulation]):
-    """A simulated motion. Controls between nodes are interpolated, since the control law itself is not stored."""
+    """A simulated motion; between nodes, the controls are interpolated, as the control law itself is not stored."""
 
     _command: ClassVar[str] = "simulate"
 

@@ -62,7 +62,7 @@ def varied(
         begin, end = (key.value(one, spec, place) for one in ends)
         if begin == end:
             raise BadInput(
-                f"{place}: both values are {shown(ends[0])}; write two different values, the first and the last"
+                f"{place}: both values are {shown(ends[0])}; give two different values, the first and the last"
             )
         if not key.given(given):
             raise BadInput(f"{place}: the instance gives no numerical value for this key; give it a number")
@@ -72,5 +72,5 @@ def varied(
         for one in found:
             case = one.at(case, share)
         if case.tf is not None and not case.tf > case.t0:
-            raise BadInput(f"[continuation]: tf = {case.tf:g} is not after t0 = {case.t0:g}; enter later times")
+            raise BadInput(f"[continuation]: tf = {case.tf:g} is not after t0 = {case.t0:g}; give later times")
     return tuple(found)

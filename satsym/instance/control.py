@@ -109,16 +109,16 @@ def _of_set(value: Any, part: ControlPart, spec: ProblemSpec, key: str) -> Norms
 
 def _norm(value: Any, unit: str, key: str) -> float:
     if isinstance(value, tuple):
-        raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
+        raise BadInput(f"{key}: got a list of {len(value)}; give one positive number")
     number = quantity(value, unit, key)
     if number <= 0:
-        raise BadInput(f"{key}: a bound of {shown(value)} admits no control; enter a positive number")
+        raise BadInput(f"{key}: a bound of {shown(value)} admits no control; give a positive number")
     return number
 
 
 def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
     if not isinstance(value, tuple):
-        raise BadInput(f"{key}: got {shown(value)}; write both bounds, such as [-0.2, 0.2]")
+        raise BadInput(f"{key}: got {shown(value)}; give both bounds, such as [-0.2, 0.2]")
     low, high = (quantity(bound, unit, key) for bound in value)
     if low > high:
         raise BadInput(f"{key}: the lower bound {shown(value[0])} exceeds the upper bound {shown(value[1])}; swap them")

@@ -54,10 +54,10 @@ def ranges(table: Final, spec: ProblemSpec) -> dict[str, tuple[float, float]]:
             continue
         key = f"[final] {variable.symbol}"
         if REFERENCE in written:
-            raise BadInput(f'{key}: "{REFERENCE}" cannot be a limit of a range; write two numbers')
+            raise BadInput(f'{key}: "{REFERENCE}" cannot be a limit of a range; give two numbers')
         if not spec.has_cost:
             raise BadInput(
-                f"{key}: the model {spec.name} has no cost that could determine a value in a range; enter a number"
+                f"{key}: the model {spec.name} has no cost that could determine a value in a range; give a number"
             )
         lower, upper = (
             sign * math.inf if end == FREE else value_of(variable, end, key)

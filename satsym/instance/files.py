@@ -47,8 +47,8 @@ def locate(name_or_path: str) -> Path:
     if path.suffix == ".toml" or len(path.parts) > 1 or _exists(path):
         return path
     raise BadInput(
-        f"no instance of this name; {_instead(name_or_path)} (`satsym instances` lists all; or give the path of a TOML "
-        "file)"
+        f"there is no instance of this name; {_instead(name_or_path)} (`satsym instances` lists all; or give the "
+        "path of a TOML file)"
     )
 
 
@@ -97,7 +97,7 @@ def finite(tree: dict[str, Any]) -> dict[str, Any]:
     """
     for key, value in _leaves(tree):
         if not _finite(value):
-            raise BadInput(f"{key}: the number is {_excess(value)}; enter a finite number")
+            raise BadInput(f"{key}: the number is {_excess(value)}; give a finite number")
     return tree
 
 
@@ -112,17 +112,17 @@ def _parse(text: str) -> dict[str, Any]:
         # Python reads no int of more than 4300 digits; one of a few hundred is too large as well, but has a key
         shorter = _MANY_DIGITS.sub("9" * 400, text)
         if shorter == text:
-            raise BadInput("a number is out of range; enter numbers with fewer digits") from None
+            raise BadInput("a number is out of range; give numbers with fewer digits") from None
     return _parse(shorter)
 
 
 def _repair(error: str) -> str:
     """Suggest the usual repair for an error of the TOML parser."""
     if error.startswith("Invalid value"):
-        return 'put text into quotes, such as "free"'
+        return 'put text in quotes, as in "free"'
     if "end of document after" in error:
-        return "correct it there; numbers are written with a decimal point"
-    return "correct it there"
+        return "correct the file at this place; numbers are written with a decimal point"
+    return "correct the file at this place"
 
 
 def _exists(path: Path) -> bool:

@@ -108,7 +108,7 @@ def _model(model: str, folder: Path) -> Kernels:
     from satsym import kernels
 
     if not model or not model.isprintable():
-        raise BadInput(f'model: {shown(model)} is not a name; write a model\'s name, such as "polar_orbit"')
+        raise BadInput(f'model: {shown(model)} is not a name; give the name of a model, such as "polar_orbit"')
     try:
         return kernels.load(model, folder)
     except BadInput as error:
@@ -119,7 +119,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     spec = model.spec
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
         raise BadInput(
-            f"title: {shown(file.title)} is not a single short line; write at most {MAX_TITLE} printable characters"
+            f"title: {shown(file.title)} is not a single short line; use at most {MAX_TITLE} printable characters"
         )
     file, free = unknowns.begun(file, spec)
     t0, tf, tf_guess = resolve.times(file.time, spec)
@@ -173,7 +173,7 @@ def _refuse_beside_limits(instance: Instance) -> None:
             key = instance.free[0].key
             raise BadInput(
                 f'{key}: "{resolve.FREE}" cannot be combined with limits on the final state or time ({name}); '
-                "enter a number"
+                "give a number"
             )
         if instance.continuation:
             raise BadInput(
@@ -207,7 +207,7 @@ def classical(table: ClassicalTable | None, spec: ProblemSpec) -> ClassicalOptio
     differentiator = time(table.differentiator, "[classical] differentiator", spec)
     if differentiator < 0.0:
         raise BadInput(
-            f"[classical] differentiator: {shown(table.differentiator)} is negative; enter a time constant, or "
+            f"[classical] differentiator: {shown(table.differentiator)} is negative; give a time constant, or "
             "0 for an ideal differentiator"
         )
     if table.gains is not None and min(table.gains) <= 0.0:
@@ -238,9 +238,7 @@ def limits(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, flo
     }
     for name, limit in found.items():
         if limit <= 0.0:
-            raise BadInput(
-                f"[limits] {name}: {shown(table[name])} is not positive; write the largest magnitude allowed"
-            )
+            raise BadInput(f"[limits] {name}: {shown(table[name])} is not positive; give the largest allowed magnitude")
     return found
 
 
@@ -263,7 +261,7 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
     found = quantity(table.deadband, position.unit, "[switching] deadband")
     if found <= 0.0:
         raise BadInput(
-            f"[switching] deadband: {shown(table.deadband)} is not positive; write the allowed error of "
+            f"[switching] deadband: {shown(table.deadband)} is not positive; give the allowed error of "
             f"{position.symbol}"
         )
     return found

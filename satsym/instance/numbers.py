@@ -78,7 +78,7 @@ class Key:
         if self.table is Table.CONTROL:
             number = quantity(given, self.unit(spec), place)
             if self.name == MAX_NORM and number <= 0.0:
-                raise BadInput(f"{place}: a bound of {shown(given)} admits no control; enter a positive number")
+                raise BadInput(f"{place}: a bound of {shown(given)} admits no control; give a positive number")
             return number
         if self.table is Table.LQR:
             return quantity(given, "1", place)
@@ -91,7 +91,7 @@ class Key:
         else:
             number = quantity(given, self.unit(spec), self.text)
         if number <= 0.0:
-            raise BadInput(f"{self.text}: {shown(given)} is not a standard deviation; enter a positive number")
+            raise BadInput(f"{self.text}: {shown(given)} is not a standard deviation; give a positive number")
         return number
 
     def of(self, instance: Instance) -> float | None:
@@ -287,7 +287,7 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
         parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
     for name, low, high in zip(spec.control_names, found.lower, found.upper, strict=True):
         if low > high:
-            raise BadInput(f"control.{name}: the lower bound {low:g} exceeds the upper bound {high:g}; exchange them")
+            raise BadInput(f"control.{name}: the lower bound {low:g} exceeds the upper bound {high:g}; swap them")
     if instance.continuation:
         ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
         found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))
@@ -297,5 +297,5 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
     for each in (found, begun):
         for name, end in (("tf", each.tf), (GUESS, each.tf_guess)):
             if end is not None and not end > each.t0:
-                raise BadInput(f"time.{name}: {end:g} is not after t0 = {each.t0:g}; enter a later time")
+                raise BadInput(f"time.{name}: {end:g} is not after t0 = {each.t0:g}; give a later time")
     return found

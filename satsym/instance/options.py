@@ -54,7 +54,7 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
         raise BadInput("[lqr] inputs: no control input remains; name at least one control")
     horizon = None if table.horizon is None else time(table.horizon, "[lqr] horizon", spec)
     if horizon is not None and horizon <= 0:
-        raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; enter a length of time, or remove it")
+        raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; give a length of time, or remove it")
     Q, R = _weights(table, spec, [spec.controls[spec.control_names.index(name)] for name in inputs])
     q, r, n = weights.checked(Q, R, table.N, len(spec.states), len(inputs))
     return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon, relative=bool(table.allowed), N=n)
@@ -96,11 +96,11 @@ def _values(value: float | str | list[float | str], variable: Variable, what: st
     key = f"[guess.{what}] {variable.symbol}"
     values = value if isinstance(value, list) else [value]
     if not values:
-        raise BadInput(f"{key}: an empty list; enter at least one number, or remove it")
+        raise BadInput(f"{key}: an empty list; give at least one number, or remove it")
     if what == "costate":
         for entry in values:
             if isinstance(entry, str):
-                raise BadInput(f"{key}: {shown(entry)} is text; enter a costate as a number without a unit")
+                raise BadInput(f"{key}: {shown(entry)} is text; give a costate as a number without a unit")
         return tuple(quantity(entry, "1", key) for entry in values)
     return tuple(value_of(variable, entry, key) for entry in values)
 

@@ -39,7 +39,7 @@ def value_of(variable: Variable, value: float | str, key: str) -> float:
     """Return a variable's value in its unit, after a check of its domain."""
     number = quantity(value, variable.unit, key)
     if variable.positive and number <= 0:
-        raise BadInput(f"{key}: {shown(value)} is outside the domain of {variable.symbol}; enter a positive value")
+        raise BadInput(f"{key}: {shown(value)} is outside the domain of {variable.symbol}; give a positive value")
     return number
 
 
@@ -76,7 +76,7 @@ def _initial(variable: Variable, value: float | str | None) -> float:
     if value is None:
         raise BadInput(f"{key}: missing; add {_wanted(variable)}")
     if value == REFERENCE:
-        raise BadInput(f'{key}: "{REFERENCE}" is for [final] only; write {_wanted(variable)}')
+        raise BadInput(f'{key}: "{REFERENCE}" can be used in [final] only; give {_wanted(variable)}')
     return value_of(variable, value, key)
 
 
@@ -92,7 +92,7 @@ def _final(variable: Variable, value: float | str, spec: ProblemSpec) -> float |
     if value != REFERENCE:
         return value_of(variable, value, key)
     if not spec.has_reference:
-        raise BadInput(f"{key}: the model {spec.name} has no reference; write {_wanted(variable)}")
+        raise BadInput(f"{key}: the model {spec.name} has no reference; give {_wanted(variable)}")
     return REFERENCE
 
 
@@ -101,14 +101,14 @@ def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, flo
     t0 = time(table.t0, "[time] t0", spec)
     tf = None if table.tf == FREE else time(table.tf, "[time] tf", spec)
     if tf is None and not spec.has_cost:
-        raise BadInput(f"[time] tf: the model {spec.name} has no cost that could determine the time; enter a number")
+        raise BadInput(f"[time] tf: the model {spec.name} has no cost that could determine the time; give a number")
     if tf is not None and table.tf_guess is not None:
         raise BadInput(f'[time] tf_guess: the final time is given; remove tf_guess, or write tf = "{FREE}"')
     tf_guess = None if table.tf_guess is None else time(table.tf_guess, "[time] tf_guess", spec)
     for key, end, given in (("tf", tf, table.tf), ("tf_guess", tf_guess, table.tf_guess)):
         if end is not None and not (end > t0 and math.isfinite(end - t0)):
             why, what = ("is not after", "a later time") if end <= t0 else ("is too far from", "a time closer to t0")
-            raise BadInput(f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; enter {what}")
+            raise BadInput(f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; give {what}")
     return t0, tf, tf_guess
 
 

@@ -150,7 +150,7 @@ class GuessTable(_Table, frozen=True):
     state: Annotated[dict[str, Series], Key("state at evenly spaced times", SOLVING, "the model's", "STATE")] = {}
     costate: Annotated[
         dict[str, Series],
-        Key("costate at evenly spaced times, without units", SOLVING, "cost by state", "STATE"),
+        Key("costate at evenly spaced times, without units", SOLVING, "cost per unit of the state", "STATE"),
     ] = {}
     control: Annotated[dict[str, Series], Key("control at evenly spaced times", SOLVING, "the model's", "CONTROL")] = {}
     parameter: Annotated[
@@ -165,7 +165,12 @@ class OrbitTable(_Table, frozen=True):
         "Earth"
     )
     inclination: Annotated[
-        Quantity | None, Key("planar models: inclination of the plane to the frame's first two axes", EXPORTING, "rad")
+        Quantity | None,
+        Key(
+            "planar models: inclination of the orbital plane to the plane of the frame's first two axes",
+            EXPORTING,
+            "rad",
+        ),
     ] = None
     node: Annotated[
         Quantity | None, Key("planar models: angle from the frame's first axis to the ascending node", EXPORTING, "rad")
@@ -185,12 +190,14 @@ class StudyTable(_Table, frozen=True):
     uniform: Annotated[
         Variations, Key("a sample: LOW,HIGH of a uniform distribution", STUDYING, "the model's", "KEY")
     ] = {}
-    sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
+    sample: Annotated[Count | None, Key("number of cases in a sample", STUDYING)] = None
     method: Annotated[Samplings | None, Key("how a sample is drawn", STUDYING)] = None
     seed: Annotated[Seed | None, Key("seed of the random numbers of a sample", STUDYING)] = None
     command: Annotated[Commands | None, Key("the command that is run for each case", STUDYING)] = None
     certificate: Annotated[Certificates | None, Key("how solutions are certified", STUDYING)] = None
-    feedback: Annotated[Name | None, Key("the control law of a simulation, as in simulate --feedback", STUDYING)] = None
+    feedback: Annotated[
+        Name | None, Key("the control law of a simulation, as for `satsym simulate --feedback`", STUDYING)
+    ] = None
     trajectories: Annotated[Flag, Key("whether trajectories are saved", STUDYING)] = False
 
 
@@ -218,8 +225,8 @@ class InstanceFile(_Table, frozen=True):
         dict[str, Quantity],
         Key('initial value of every state; "free" if the value is to be found', unit="the model's", names="STATE"),
     ]
-    time: Annotated[TimeTable, Key("when it begins and ends")]
-    title: Annotated[Text, Key("title, one line")] = ""
+    time: Annotated[TimeTable, Key("initial and final time")]
+    title: Annotated[Text, Key("title of one line")] = ""
     parameters: Annotated[
         dict[str, Quantity],
         Key(
@@ -247,7 +254,7 @@ class InstanceFile(_Table, frozen=True):
     ] = {}
     lqr: Annotated[LqrTable | None, Key("a linear-quadratic regulator", REGULATING)] = None
     solver: Annotated[SolverOptions, Key("options of the solvers", MOVING)] = SolverOptions()
-    guess: Annotated[GuessTable, Key("where solvers may start", SOLVING)] = GuessTable()
+    guess: Annotated[GuessTable, Key("initial guesses for the solvers", SOLVING)] = GuessTable()
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
         dict[str, Quantity],
@@ -258,8 +265,8 @@ class InstanceFile(_Table, frozen=True):
             "STATE or quantity",
         ),
     ] = {}
-    switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
-    driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None
+    switching: Annotated[SwitchingTable | None, Key("a switching feedback law", RELAYS)] = None
+    driven: Annotated[DrivenTable | None, Key("a control that other instances determine", COMPARING)] = None
     continuation: Annotated[
         dict[str, Ends],
         Key(
@@ -269,7 +276,7 @@ class InstanceFile(_Table, frozen=True):
             "PARAMETER, t0, tf, initial.STATE or final.STATE",
         ),
     ] = {}
-    study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
+    study: Annotated[StudyTable | None, Key("a study of this instance over ranges of values", STUDYING)] = None
     orbit: Annotated[OrbitTable | None, Key("date of the motion, and orientation of its plane in space", EXPORTING)] = (
         None
     )
@@ -306,7 +313,7 @@ def _table(tree: dict[str, Any], table: Any, section: str) -> Any:
             raise BadInput(f"{_key(section, name)}: unknown key; {_instead(name, kinds, table)}")
     for name, entry in fields.items():
         if entry.required and name not in tree:
-            raise BadInput(f"{_key(section, name)}: missing; write {wanted(kinds[name], section, name)}")
+            raise BadInput(f"{_key(section, name)}: missing; give {wanted(kinds[name], section, name)}")
     return table(**{name: _value(value, kinds[name], section, name) for name, value in tree.items()})
 
 
@@ -331,9 +338,9 @@ def _value(value: Any, kind: Any, section: str, name: str) -> Any:
         try:
             return _chosen(msgspec.convert(value, kind), kind)
         except msgspec.ValidationError:
-            raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {wanted(kind, section, name)}") from None
+            raise BadInput(f"{_key(section, name)}: got {shown(value)}; give {wanted(kind, section, name)}") from None
     if not isinstance(value, dict):
-        raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {wanted(kind, section, name)}")
+        raise BadInput(f"{_key(section, name)}: got {shown(value)}; give {wanted(kind, section, name)}")
     below = _below(section, name)
     if inner is not None:
         return _table(value, inner, below)
@@ -385,5 +392,5 @@ def _instead(name: str, kinds: dict[str, Any], table: type[Any]) -> str:
         for section, kind in kinds.items():
             inner = inner_table(kind)
             if inner is not None and name in inner.__struct_fields__:
-                return f"it belongs under [{section}]"
+                return f"it belongs in the table [{section}]"
     return suggestion(name, kinds)

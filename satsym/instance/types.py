@@ -247,7 +247,8 @@ class Instance:
         """
         if self.free:
             raise BadInput(
-                f'{self.called}: {self.free[0].key}: the value of "free" is found only by solving; enter a number'
+                f'{self.called}: {self.free[0].key}: the value of "free" is found only by solving the problem; give '
+                "a number"
             )
 
     @property

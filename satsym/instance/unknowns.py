@@ -85,7 +85,7 @@ def begun(file: InstanceFile, spec: ProblemSpec) -> tuple[InstanceFile, tuple[Un
     found = tuple(_stated(file, spec))
     if found and not spec.has_cost:
         raise BadInput(
-            f"{found[0].key}: the model {spec.name} has no cost that could determine this value; enter a number"
+            f"{found[0].key}: the model {spec.name} has no cost that could determine this value; give a number"
         )
     if file.time.t0_guess is not None and file.time.t0 != FREE:
         raise BadInput(f'[time] t0_guess: the initial time is given; remove t0_guess, or write t0 = "{FREE}"')

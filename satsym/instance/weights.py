@@ -46,7 +46,7 @@ def checked(
     """
     q, r = _matrix(Q, states, "Q"), _matrix(R, inputs, "R")
     if smallest_eigenvalue(r) <= ROUNDING:
-        raise BadInput("[lqr] R: not positive definite, so some input costs nothing; write weights above 0")
+        raise BadInput("[lqr] R: not positive definite, so some input costs nothing; give positive weights")
     return q, r, None if N is None else _cross(N, states, inputs)
 
 
@@ -55,7 +55,7 @@ def _cross(rows: Sequence[float | Sequence[float]], states: int, inputs: int) ->
     found = tuple(tuple(row) if isinstance(row, Sequence) else () for row in rows)
     if len(found) != states or any(len(row) != inputs for row in found):
         raise BadInput(
-            f"[lqr] N: the matrix has the wrong shape; write a row for each state ({states}) with a number for "
+            f"[lqr] N: the matrix has the wrong shape; give a row for each state ({states}) with a number for "
             f"each active input ({inputs})"
         )
     return found
@@ -136,13 +136,13 @@ def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
     key, given = f"[lqr.allowed] {variable.symbol}", allowed[variable.symbol]
     deviation = quantity(given, variable.unit, key)
     if not 1e-100 < deviation < 1e100:
-        raise BadInput(f"{key}: an allowed deviation must be positive, not {shown(given)}; enter a positive number")
+        raise BadInput(f"{key}: an allowed deviation must be positive, not {shown(given)}; give a positive number")
     return 1.0 / deviation**2
 
 
 def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Matrix:
     """Return a symmetric matrix from its rows or its diagonal."""
-    wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
+    wanted = f"give {size} numbers (the diagonal) or {size} rows of {size} numbers"
     diagonal = [row for row in rows if not isinstance(row, Sequence)]
     if len(rows) != size or len(diagonal) not in (0, size):
         raise BadInput(
@@ -159,7 +159,7 @@ def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Ma
         for j in range(i):
             limit = ROUNDING * max(abs(matrix[i][j]), math.sqrt(abs(matrix[i][i]) * abs(matrix[j][j])))
             if not abs(matrix[i][j] - matrix[j][i]) <= limit:
-                raise BadInput(f"[lqr] {name}: not symmetric at row {i + 1}, column {j + 1}; write (A + A')/2")
+                raise BadInput(f"[lqr] {name}: not symmetric at row {i + 1}, column {j + 1}; use (A + A')/2")
     return matrix
 
 

@@ -131,7 +131,7 @@ class Body:
             case ast.If() if self.form == "np" and not self.allocated and text_of(node) == self._allocation():
                 self.allocated = True
             case _:
-                refuse(node, f"has a statement of another kind ({_kind(node)})")
+                refuse(node, f"has a statement of an unsupported kind ({_kind(node)})")
 
     def _unpack(self, node: ast.stmt, targets: list[ast.expr], group: str) -> None:
         if len(targets) != self.packed[group]:
@@ -170,11 +170,11 @@ class Body:
                 if not 0 < steps <= MOST_REPEATED:
                     refuse(node, f"repeats more than {MOST_REPEATED} times")
             case _:
-                refuse(node, "has a loop other than one of a stated number of steps")
+                refuse(node, "has a loop without a fixed number of steps")
         self.repeated = True
         for statement in node.body:
             if not (isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name)):
-                refuse(statement, f"has a statement of another kind ({_kind(statement)})")
+                refuse(statement, f"has a statement of an unsupported kind ({_kind(statement)})")
             self._statement(statement)
         self.repeated = False
 
@@ -201,10 +201,10 @@ class Body:
             case ast.Tuple(elts=[ast.Constant(value=row), ast.Constant(value=column)]):
                 entry = (row, column)
             case _:
-                refuse(place, "stores into no entry of the result")
+                refuse(place, "assigns to something other than an entry of the result")
         inside = (type(k) is int and 0 <= k < size for k, size in zip(entry, self.shape, strict=False))
         if len(entry) != len(self.shape) or not all(inside):
-            refuse(place, "stores into no entry of the result")
+            refuse(place, "assigns to something other than an entry of the result")
         self.stored.add(entry)
 
     def _result(self, node: ast.stmt) -> None:
@@ -218,7 +218,7 @@ class Body:
             case ast.expr() as value if self.form != "np" and not self.shape:
                 self._number(value)
             case _:
-                refuse(node, "returns something of another shape")
+                refuse(node, "returns a result of another shape")
 
     def _number(self, node: ast.expr) -> None:
         """Check an expression: a float, or an array of floats in a batch form.
@@ -252,14 +252,14 @@ class Body:
                         for part in (left, right, *arguments[1:]):
                             self._number(part)
                     case _:
-                        refuse(node, "compares something of another kind")
+                        refuse(node, "has a comparison of an unsupported kind")
             case ast.IfExp(
                 test=ast.Compare(left=left, ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()], comparators=[right])
             ) if self.form != "np":
                 for part in (left, right, node.body, node.orelse):
                     self._number(part)
             case _:
-                refuse(node, f"has an expression of another kind ({_kind(node)})")
+                refuse(node, f"has an expression of an unsupported kind ({_kind(node)})")
 
     def _element(self, node: ast.Subscript) -> None:
         """Check an element of a sequence over nodes or midpoints, whose index must be inside."""
@@ -270,7 +270,7 @@ class Body:
             elif node.value.id in self.midpoints and self.index:
                 inside = {self.index}
         if text_of(node.slice) not in inside:
-            refuse(node, "has an index of another kind")
+            refuse(node, "has an index of an unsupported kind")
 
 
 def _kind(node: ast.AST) -> str:

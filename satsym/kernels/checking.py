@@ -116,25 +116,25 @@ def _literal(node: ast.AST) -> None:
 def _fault(spec: ProblemSpec) -> str:
     """Describe what no model has, though its fields are of the right types; empty for a possible model."""
     if not _NAME.match(spec.name):
-        return "a name that is none"
+        return "a name that is not valid"
     if spec.has_cost == (spec.control_set is None):
-        return "a cost and no control set, or the reverse"
+        return "a cost without a control set, or a control set without a cost"
     if not spec.states:
         return "no states"
     if spec.switching and spec.control_set != "box":
-        return "controls that switch, and no box for them"
+        return "controls that switch but are not in a box"
     if (spec.control_set == PRODUCT) != bool(spec.control_parts):
-        return "a product of control sets without them, or the reverse"
+        return "a product of control sets without a list of these sets, or such a list without a product"
     in_sets = sorted(c for part in spec.control_parts for c in part.controls)
     if spec.control_parts and sorted(spec.control_names) != in_sets:
-        return "control sets that are not of its controls"
+        return "control sets that contain other controls than its own"
     halves = (*spec.coordinates, *spec.velocities)
     if halves and (len(spec.coordinates) != len(spec.velocities) or sorted(halves) != sorted(spec.state_names)):
         return "coordinates and velocities that are not its states"
     if set(spec.linear) - set(LINEAR):
-        return "functions of linear models that none has"
+        return "functions of linear models that no linear model has"
     if len(spec.terminal_inequalities) > len(spec.multipliers):
-        return "inequalities at the end without multipliers"
+        return "terminal inequalities without multipliers"
     groups = (
         spec.states,
         spec.controls,
@@ -146,7 +146,7 @@ def _fault(spec: ProblemSpec) -> str:
     )
     for group in groups:
         if len({v.symbol for v in group}) < len(group):
-            return "two variables of one name"
+            return "two variables with the same name"
     return ""
 
 

@@ -37,7 +37,7 @@ _DECLARING = "satsym.symbolic"
 """The package that derivation files import, and generated modules never do."""
 _STATED = re.compile(r"""\bProblem\(\s*(?:name\s*=\s*)?["']([a-z][a-z0-9_]{0,99})["']""")
 
-_ANEW = "write it anew with `satsym derive`"
+_ANEW = "write it again with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
 
@@ -173,7 +173,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     """Return the file that a relative path names, and the folder that it cannot leave, with symbolic links followed."""
     if Path(model).is_absolute():
         raise BadInput(
-            f"{shown(model)}: absolute paths are not allowed; write a path relative to the folder of the instance file"
+            f"{shown(model)}: absolute paths are not allowed; give a path relative to the folder of the instance file"
         )
     if not is_name(model.rpartition("/")[2]):
         raise BadInput(f"{shown(model)}: a file name must be {NAMES}")

@@ -98,17 +98,19 @@ def of_ends(statement: Statement, end: End) -> Hypothesis:
             continue
         push = end.z[n + i] - s[i]
         if not (push > 0 if target.side is Side.UPPER else push < 0):
-            raise NotProved(f"the multiplier of the range of {names[i]} at the end is not shown to be positive")
+            raise NotProved(
+                f"the multiplier of the range of {names[i]} at the final time could not be shown to be positive"
+            )
     for i, (low, high) in statement.open_ranges.items():
         if not (end.z[i] > low and end.z[i] < high):
-            raise NotProved(f"{names[i]} is not shown to end inside its range")
+            raise NotProved(f"{names[i]} could not be shown to end inside its range")
     first = len(spec.multipliers) - len(spec.terminal_inequalities)
     for k in statement.limits:
         called = f"the inequality {spec.terminal_inequalities[k - first]} at the end"
         if k in statement.active and not end.nu[statement.active.index(k)] > 0:
-            raise NotProved(f"the multiplier of {called} is not shown to be positive")
+            raise NotProved(f"the multiplier of {called} could not be shown to be positive")
         if k not in statement.active and not end.constraints[k][0] < 0:
-            raise NotProved(f"{called} is not shown to hold strictly")
+            raise NotProved(f"{called} could not be shown to hold strictly")
     ranges = len(statement.open_ranges) + sum(target.side is not None for target in statement.targets.values())
     given = sum(i < statement.own for i in statement.targets)
     free = statement.own - given

@@ -211,7 +211,7 @@ def kernel_of(slopes: Matrix) -> Matrix:
         rest = arb_mat(count, len(others), [slopes[i, j] for i in range(count) for j in others])
         solved = block.inv() * rest
     except ZeroDivisionError:
-        raise NotProved("the gradients of the constraints at the end are not shown to be independent") from None
+        raise NotProved("the gradients of the terminal constraints could not be shown to be independent") from None
     found = arb_mat(len(others), size)
     for row, j in enumerate(others):
         found[row, j] = 1

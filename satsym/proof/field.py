@@ -25,7 +25,7 @@ DEEPEST = 10
 
 
 class _FormNotPositive(NotProved):
-    """The field is regular, but its quadratic form at the final time is not shown to be positive."""
+    """The field is regular, but its quadratic form at the final time could not be shown to be positive."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def _ratio(x: Matrix, lam: Matrix) -> Matrix:
     try:
         w = lam * x.inv()
     except ZeroDivisionError:
-        raise NotProved("X of the field is not shown to be regular (a conjugate point?)") from None
+        raise NotProved("X of the field could not be shown to be regular (a conjugate point?)") from None
     return (w + w.transpose()) * (arb(1) / 2)
 
 
@@ -166,7 +166,7 @@ def _across(law: Law, following: Law, segment: Segment, w: Matrix, time: Ball) -
     slopes = gradient(law, law.leaving(following), there)
     speed = sum((g * v for g, v in zip(slopes, before, strict=True)), arb(0))
     if not speed < 0:
-        raise NotProved("a switching function vanishes without a slope")
+        raise NotProved("a switching function vanishes with zero slope")
     along = [
         slopes[j] + sum((slopes[n + i] * w[i, j] for i in range(n)), arb(0)) for j in range(n)
     ]  # of the condition by the field's states

@@ -113,7 +113,7 @@ def final_state(statement: Statement, order: Order, sizes: Sequence[float]) -> t
     found = integrated(Uncontrolled(statement), list(statement.initial), [arb(0)] * n, span, arb(0), order, sizes)
     inside = [i for i, v in enumerate(statement.spec.states) if v.positive]
     if not all(step.range[i] > 0 for step in found.steps for i in inside):
-        raise NotProved("a state is not shown to stay positive, which its meaning asks for")
+        raise NotProved("a state that must be positive could not be shown to remain positive")
     return found.point, len(found.steps)
 
 

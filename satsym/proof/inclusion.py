@@ -54,11 +54,11 @@ def inverse(jacobian: Matrix) -> Matrix:
         If there is none.
     """
     if jacobian.nrows() != jacobian.ncols():
-        raise NotProved("as many equations as unknowns are needed; two bounds are met at once")
+        raise NotProved("the numbers of equations and unknowns differ; two bounds are reached at the same time")
     try:
         return jacobian.mid().inv().mid()
     except ZeroDivisionError:
-        raise NotProved("the equations of the extremal are singular; it may be one of a family") from None
+        raise NotProved("the equations of the extremal are singular; it may belong to a family of extremals") from None
 
 
 MOST_NODES = 9

@@ -15,7 +15,7 @@ from flint import arb, arb_series, ctx
 from satsym.proof.balls.arithmetic import Answers, Ball, Key, NotProved, Series, constant, value
 from satsym.proof.balls.kernel import BallKernel
 
-SIMULTANEOUS = "two bounds are met or left at once; the theorem asks for one at a time"
+SIMULTANEOUS = "two bounds are reached or left at the same time; the theorem requires one at a time"
 
 
 class Law(ABC):

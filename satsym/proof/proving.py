@@ -87,7 +87,7 @@ def _tried(record: Proof, attempt: Callable[[Proof], Proof]) -> Proof:
     except _Stopped as stopped:
         return replace(stopped.record, reason=stopped.reason)
     except (ArithmeticError, ValueError) as error:
-        return replace(record, reason=f"the motion is singular near the answer ({error})")
+        return replace(record, reason=f"the motion is singular near the solution ({error})")
 
 
 def _first(case: Instance, record: Proof) -> Proof:
@@ -212,7 +212,8 @@ def _enclosed(shooting: Shooting, place: _Place, digits: int) -> Located:
             break
     if inclusion is None or not inclusion.inside:
         raise NotProved(
-            "existence: no box about the answer is mapped into itself; more digits, or a better answer, may help"
+            "existence: no box around the solution is mapped into itself; more digits or a more accurate solution "
+            "may help"
         )
     for spare in (SPARE, 2 * SPARE):
         order = Order(max(18, int(1.1 * (digits + spare))), 10.0 ** -(digits + spare))
@@ -221,7 +222,7 @@ def _enclosed(shooting: Shooting, place: _Place, digits: int) -> Located:
         if last.inside:
             break
     else:
-        raise NotProved("the extremal is not located to all digits; ask for fewer")
+        raise NotProved("the extremal could not be enclosed to all requested digits; request fewer digits")
     lengths = zip(box.lengths, box.lengths_around, strict=True)
     if not all(a + b > 0 for a, b in list(lengths)[: len(shooting.arcs)]):
         raise NotProved("an arc has no positive length")

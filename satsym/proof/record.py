@@ -190,4 +190,4 @@ def check_digits(digits: int) -> None:
         With those that are.
     """
     if not FEWEST_DIGITS <= digits <= MOST_DIGITS:
-        raise BadInput(f"digits: got {digits}; enter a whole number from {FEWEST_DIGITS} to {MOST_DIGITS}")
+        raise BadInput(f"digits: got {digits}; give a whole number from {FEWEST_DIGITS} to {MOST_DIGITS}")

@@ -78,7 +78,8 @@ def _on_step(law: Law, step: Step, before: Junction | None, after: Junction | No
         low, high = step.h * first, step.h * (1.0 - last_part)
         if not _positive(condition, low, high):
             raise NotProved(
-                f"{where}: a sign that its law needs ({key[0]} {key[1]}) is not shown; another structure may be right"
+                f"{where}: a sign that its law requires ({key[0]} {key[1]}) could not be shown; another structure "
+                "may be right"
             )
     return len(near)
 
@@ -101,7 +102,9 @@ def _part(condition: _Condition, order: int, end: int, sign: int, where: str) ->
         between = arb(0).union(w) if end > 0 else (h - w).union(h)
         if sign * polynomial(derivative, between) > 0 or (order == 1 and sign * condition.rate(between) > 0):
             return float(2.0**-k)
-    raise NotProved(f"{where}: a condition of its law vanishes at its end without a slope (no transversal switching)")
+    raise NotProved(
+        f"{where}: a condition of its law vanishes at its end with zero slope (the switching is not transversal)"
+    )
 
 
 @dataclass(frozen=True)
@@ -154,7 +157,7 @@ def _require_weights(law: AtLevels, steps: Sequence[Step]) -> None:
         t, x, lam = law.parts([arb_series([v]) for v in step.range])
         for weight in law.kernel.magnitude_weight(t, x, lam, law.p):
             if not value(weight) >= 0:
-                raise NotProved("the weight of a control's magnitude is not shown to be positive")
+                raise NotProved("the weight of a control's magnitude could not be shown to be positive")
 
 
 def unique(shooting: Shooting, passed: Pass) -> str:
@@ -174,7 +177,7 @@ def unique(shooting: Shooting, passed: Pass) -> str:
         for segment in segments:
             for step in segment.steps:
                 if not all(step.range[i] > 0 for i in inside):
-                    raise NotProved("a state is not shown to stay positive, which its meaning asks for")
+                    raise NotProved("a state that must be positive could not be shown to remain positive")
                 reason = _of_hamiltonian(arc.law, step)
     return reason
 
@@ -196,5 +199,5 @@ def _of_hamiltonian(law: Law, step: Step) -> str:
     except TypeError:
         raise BeyondProof("a Hamiltonian that is not quadratic in the controls") from None
     if not positive(arb_mat(m, m, entries)):
-        raise NotProved("H_uu is not shown to be positive definite")
+        raise NotProved("H_uu could not be shown to be positive definite")
     return "H is quadratic in the controls, and H_uu is positive definite"

@@ -317,7 +317,7 @@ def _refuse_cases(kernel: BallKernel) -> None:
     if any(name.startswith(("path_", "boundary_")) for name in timed):
         raise BeyondProof("path constraints that depend on time")
     if spec.autonomous and timed:
-        raise BeyondProof("a motion that depends on time, of a model that is said not to")
+        raise BeyondProof("a motion that depends on time, although the model is declared not to")
 
 
 def refuse(case: Instance) -> None:
@@ -338,21 +338,24 @@ def refuse(case: Instance) -> None:
     lifts = any(one.place is not Place.INITIAL for one in case.free)
     for there, feature in (
         (spec.path_constraints and spec.control_set != "free", "path constraints together with bounds of the controls"),
-        (0 in orders and len(orders) > 1, "path constraints on states and the control beside those on states alone"),
+        (
+            0 in orders and len(orders) > 1,
+            "path constraints on states and the control together with constraints on states alone",
+        ),
         (mixed(spec) and len(spec.controls) != 1, "constraints on states and several controls"),
         (spec.interior, "waypoints"),
         (spec.chattering, "chattering controls"),
         (spec.moving_magnitudes, "magnitudes of controls in the motion"),
-        (lifts and spec.path_constraints, "path constraints beside free parameters or a free initial time"),
+        (lifts and spec.path_constraints, "path constraints together with free parameters or a free initial time"),
         (
             spec.conditions and any(one.place is Place.PARAMETER for one in case.free),
             "free parameters that must obey conditions together",
         ),
         (
             lifts and any(part.branch == "throttled" for part in spec.control_parts),
-            "thrust that is throttled beside free parameters or a free initial time",
+            "throttled thrust together with free parameters or a free initial time",
         ),
-        (spec.equilibria, "a model that is an attitude in orbit"),
+        (spec.equilibria, "a model of an attitude in orbit"),
     ):
         if there:
             raise BeyondProof(feature)

@@ -37,7 +37,7 @@ class Path:
 
     def __init__(self, found: Solution, timed: bool) -> None:
         if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
-            raise NotProved("there are no costates to begin with")
+            raise NotProved("the solution contains no costates")
         keep = np.append(np.diff(found.times) > 0.0, True)
         self.times = np.asarray(found.times)[keep]
         rows = [np.asarray(found.x)[:, keep], np.asarray(found.lam)[:, keep]]
@@ -77,7 +77,7 @@ def _regular(statement: Statement, found: Solution, path: Path, kind: type[Regul
         law.rates(z), law.jacobian(z), law.cost(z), kind.control(law, z)  # each learns how its comparisons come out
         seen.append((float(t), known.setdefault(law.state(), law)))
     if not seen:
-        raise NotProved("there are no nodes to begin with")
+        raise NotProved("the solution contains no nodes")
     laws: list[Law] = []
     times = [float(path.times[0])]
     previous = times[0]
@@ -100,7 +100,7 @@ def _held(statement: Statement, found: Solution) -> tuple[list[Law], list[float]
     weighed = _weighed(statement, found)
     for low, high, costs in zip(statement.lower, statement.upper, weighed, strict=True):
         if isinstance(low, float) or isinstance(high, float):
-            raise BeyondProof("a control without bounds that enters without a square")
+            raise BeyondProof("a control without bounds whose square does not enter the cost")
         levels.append([low, arb(0), high] if costs and low < 0 and high > 0 else [low, high])
     times, controls = np.asarray(found.times), np.asarray(found.u)
     kept: list[tuple[float, float, tuple[int, ...]]] = []

@@ -145,7 +145,7 @@ def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[J
         boundary = OnBoundary(kernel, p, which)
         first = boundary.order == 1
         if first and event.kind == "touch":
-            raise BeyondProof("a path constraint of order one that is touched")
+            raise BeyondProof("a path constraint of order one with a touch point")
         laws.append(boundary if entered else BesideWalls(kernel, p, ()))
         order = 2 if first or event.kind == "touch" else 3
         asked = {"entry": 2 * boundary.order, "touch": 2, "exit": 0}[event.kind]
@@ -181,7 +181,7 @@ def require_push(law: OnBoundary, steps: Sequence[Step]) -> None:
         ctx.cap = 1
         push = value(law.multiplier([arb_series([v]) for v in step.range]))
         if not push >= 0:
-            raise NotProved("the multiplier of a path constraint on its boundary is not shown to be nonnegative")
+            raise NotProved("the multiplier of a path constraint on its boundary could not be shown to be nonnegative")
 
 
 def require_jumps(jumps: Sequence[Ball]) -> None:
@@ -193,4 +193,4 @@ def require_jumps(jumps: Sequence[Ball]) -> None:
         If one may be negative.
     """
     if not all(jump >= 0 for jump in jumps):
-        raise NotProved("a jump of the costates at a path constraint is not shown to be nonnegative")
+        raise NotProved("a jump of the costates at a path constraint could not be shown to be nonnegative")

@@ -28,7 +28,7 @@ def place_of(model: str, beside: Path) -> tuple[Path | None, str]:
     folder, slash, name = model.removesuffix(record.SUFFIX).rpartition("/")
     if not is_name(name):
         raise BadInput(
-            f'{shown(model)} is not a model; write the name of a model, or "DIR/NAME" after satsym derive --out DIR'
+            f'{shown(model)} is not a model; give the name of a model, or "DIR/NAME" after satsym derive --out DIR'
         )
     try:
         return (beside / folder if slash else None), name

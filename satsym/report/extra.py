@@ -26,7 +26,7 @@ def library(name: str, distribution: str, extra: str) -> ModuleType:
     try:
         return import_module(name)
     except ImportError:
-        raise BadInput(f"{distribution} is not installed; pip install 'satsym[{extra}]'") from None
+        raise BadInput(f"{distribution} is not installed; run pip install 'satsym[{extra}]'") from None
 
 
 def written_by(name: str, distribution: str) -> ModuleType:

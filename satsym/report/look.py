@@ -10,10 +10,10 @@ from satsym.wording import shown, suggestion
 
 FORMATS = ("png", "pdf", "svg")
 SIZES = {
-    "screen": "10 inches wide",
-    "page": "a page of a journal, 7 inches wide",
-    "column": "a column, 3.5 inches wide, panels below each other",
-    "slide": "a slide, 13.3 by at most 7.5 inches",
+    "screen": "10 inches wide, the default",
+    "page": "a journal page, 7 inches wide",
+    "column": "a journal column, 3.5 inches wide, with the panels below each other",
+    "slide": "13.3 inches wide and at most 7.5 inches high",
 }
 
 

@@ -88,7 +88,7 @@ def carry_out(
         if not _passing(done):  # else the others are wanted once more
             parts.remove(folder)
     except OSError as error:
-        reason = error.strerror or "the path leads nowhere"
+        reason = error.strerror or "the path cannot be resolved"
         raise BadInput(
             f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat the command "
             "with --resume"
@@ -155,7 +155,7 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
     if changed := differences(before, study.identity):
         more = f", and {len(changed) - 3} more" if len(changed) > 3 else ""
         raise BadInput(
-            f"{printable(str(folder))}: holds another study: {'; '.join(changed[:3])}{more}; give another folder"
+            f"{printable(str(folder))}: contains another study: {'; '.join(changed[:3])}{more}; give another folder"
         )
 
 

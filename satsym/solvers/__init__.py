@@ -58,7 +58,7 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
         raise BadInput(f"{instance.called}: {refusal}")
     if spec.in_arcs and instance.free:
         key, beside = instance.free[0].key, "waypoints" if spec.interior else "path constraints"
-        raise BadInput(f'{instance.called}: {key}: "free" cannot be combined with {beside}; enter a number')
+        raise BadInput(f'{instance.called}: {key}: "free" cannot be combined with {beside}; give a number')
     found = partial(_with_free, examined=examined)
     return _solved_in_steps(instance, progress, found) if instance.continuation else found(instance, progress)
 

@@ -30,7 +30,7 @@ Method = Callable[[Instance, Limits], Extremal]
 
 def without_numbers(instance: Instance, error: Exception) -> Extremal:
     """Return no extremal, because the computation failed numerically."""
-    return nothing(instance, Status.NON_FINITE, f"arithmetic fails on the way ({error})")
+    return nothing(instance, Status.NON_FINITE, f"an arithmetic operation failed ({error})")
 
 
 def nothing(instance: Instance, status: Status, message: str) -> Extremal:

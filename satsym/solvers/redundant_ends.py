@@ -104,7 +104,7 @@ class Redundant:
         """Return a message that says which condition was left out, and why."""
         return (
             f"the other final states already determine the final {self.state}, because no control changes a "
-            "certain function of them: this condition was left out"
+            "certain function of them: this condition was therefore left out"
         )
 
 

@@ -70,8 +70,8 @@ def with_cheapest_turns(
     if instance.tf is None and (lost or len(path) > MOST_MOVES):
         values = ", ".join(f"{value:.4g}" for value in path[-3:])
         message = (
-            f"the cost decreases with every further turn: the last three numbers of turns cost {values}; fix the "
-            "final time"
+            f"the cost decreases with every further turn: the last three numbers of turns have the costs {values}; "
+            "fix the final time"
         )
         status = Status.NO_MINIMISER
     found = _turned(known[at], instance, dict(zip(angles, at, strict=True)))
@@ -150,7 +150,7 @@ def _message(angles: list[str], at: tuple[int, ...], others: dict[tuple[int, ...
 
 def _turns(count: int) -> str:
     if not count:
-        return "ends as stated"
+        return "ends at the given value"
     return f"ends {abs(count)} turn{'s' if abs(count) > 1 else ''} {'above' if count > 0 else 'below'} what is stated"
 
 

@@ -87,7 +87,7 @@ def from_cold_start(instance: Instance, limits: Limits, accurate: Accurate) -> E
     if led is not None:
         problem, start = led
     elif instance.tf is None:
-        message = "the final time is free, and Newton's method begins at a guess of states and costates alone"
+        message = "the final time is free, but Newton's method starts from a guess of states and costates only"
         return nothing(instance, Status.NOT_CONVERGED, message)
     else:
         problem = two_point(instance, instance.tf - instance.t0)

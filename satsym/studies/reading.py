@@ -55,7 +55,7 @@ def design(asked: StudyTable, instance: Instance) -> Design:
     else:
         found = _sample(asked, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
     if found.count > MOST_ROWS:
-        raise BadInput(f"the study has {found.count} cases, but at most {MOST_ROWS} are allowed; write fewer values")
+        raise BadInput(f"the study has {found.count} cases, but at most {MOST_ROWS} are allowed; give fewer values")
     return found
 
 
@@ -64,12 +64,12 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     logarithmic = text.startswith("log:")
     parts = text.removeprefix("log:").split(":")
     if len(parts) != 3 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is not a range; write {RANGE}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a range; give {RANGE}")
     low, high = (_value(key, part, instance) for part in parts[:2])
     count = _count(parts[2], f"{key.text}: {shown(text)}")
     if logarithmic and not min(low, high) > 0.0:
         raise BadInput(
-            f"{key.text}: the logarithm of {shown(text)} does not exist; write positive limits, or leave out log:"
+            f"{key.text}: the logarithm of {shown(text)} does not exist; give positive limits, or leave out log:"
         )
     if (low == high) != (count == 1):
         raise BadInput(
@@ -83,13 +83,13 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
     key = keys.find(name, instance)
     parts = text.split(",")
     if len(parts) != 2 or not all(part.strip() for part in parts):
-        raise BadInput(f"{key.text}: {shown(text)} is not a {kind} distribution; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)} is not a {kind} distribution; give {PAIR[kind]}")
     first = _value(key, parts[0], instance)
     if kind == "normal":
         return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
     second = _value(key, parts[1], instance)
     if not first < second:
-        raise BadInput(f"{key.text}: {shown(text)}, but LOW must be less than HIGH; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)}, but LOW must be less than HIGH; give {PAIR[kind]}")
     return Distribution(key, first, second, normal=False)
 
 
@@ -116,7 +116,7 @@ def _number(text: str, key: Key) -> float | str:
     except ValueError:
         return text.strip()
     if number - number != 0.0:
-        raise BadInput(f"{key.text}: {shown(text)} is not finite; enter a finite number")
+        raise BadInput(f"{key.text}: {shown(text)} is not finite; give a finite number")
     return number
 
 
@@ -127,7 +127,7 @@ def _count(text: str, place: str) -> int:
         count = 0
     if not 1 <= count <= MOST_ROWS:
         raise BadInput(
-            f"{place}: the number of values must be a positive integer, not {shown(text)}; enter a whole "
+            f"{place}: the number of values must be a positive integer, not {shown(text)}; give a whole "
             f"number between 1 and {MOST_ROWS}"
         )
     return count

@@ -107,7 +107,7 @@ def processes(wanted: int | None, chunks: int) -> int:
     """
     if wanted is not None and (not isinstance(wanted, int) or wanted < 1):
         raise BadInput(
-            f"workers: the number of workers must be positive, not {shown(wanted)}; enter a whole number of at "
+            f"workers: the number of workers must be positive, not {shown(wanted)}; give a whole number of at "
             "least 1, or leave it out"
         )
     able = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -52,7 +52,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     if problem and problem.control_set not in get_args(ControlSetKind):
         kinds = " or ".join(f'"{kind}"' for kind in get_args(ControlSetKind))
         raise DerivationError(
-            f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}", ("control_set",)
+            f"{problem.name}: control_set: got {shown(problem.control_set)}; give {kinds}", ("control_set",)
         )
     if problem and problem.control_sets and problem.control_set != "free":
         raise DerivationError(
@@ -87,7 +87,7 @@ def _refuse_inequalities(problem: Problem) -> None:
     states = {v.symbol for v in problem.model.states}
     for name in problem.terminal_inequalities:
         if name in states:
-            message = f"{problem.name}: terminal_inequalities: {name} is the name of a state; take another"
+            message = f"{problem.name}: terminal_inequalities: {name} is the name of a state; choose another"
             raise DerivationError(message, ("terminal_inequalities",))
 
 
@@ -96,7 +96,7 @@ def _refuse_constraints(problem: Problem) -> None:
     constraints, what = problem.path_constraints, f"{problem.name}: path_constraints"
     parts = parts_of(problem) if constraints else ()
     if taken := [b.symbol for part in parts if part.kind == "box" for b in part.limits if b.symbol in constraints]:
-        message = f"{taken[0]} is the name of a bound of the controls; take another"
+        message = f"{taken[0]} is the name of a bound of the controls; choose another"
         raise DerivationError(f"{what}: {message}", ("path_constraints",))
     if any(part.kind in ("ball", "annulus") for part in parts):
         message = (
@@ -146,7 +146,7 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     def refuse(what: str, stated: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
         expressions = list(stated)
         if any(sp.sympify(e).has(sp.nan, sp.oo, -sp.oo, sp.zoo) for e in expressions):
-            message = f"{derivation.name}: {what} is not finite; something in it is divided by zero"
+            message = f"{derivation.name}: {what} is not finite, because of a division by zero"
             raise DerivationError(message, (field,))
         foreign = set().union(*(sp.sympify(e).free_symbols for e in expressions)) - allowed
         if foreign:

@@ -105,7 +105,7 @@ class Model:
     name
         Name of the model where it is generated without a cost.
     title
-        Title of one line.
+        Title, on a single line.
     states, controls, parameters
         Declared variables; arrays everywhere follow this order.
     definitions
@@ -164,19 +164,19 @@ class Model:
         return None
 
     def brings(self) -> tuple[Variable, ...]:
-        """Return variables besides the declared ones; a declared variable with the same name is the same variable."""
+        """Return the variables that the model adds to the declared ones; a name that is declared is not added again."""
         return ()
 
     def replaced_states(self) -> tuple[Variable, ...]:
-        """Return the states of another motion which the states of this model replace under other names."""
+        """Return the states of the original model that states with other names replace in this model."""
         return ()
 
     def replaced_controls(self) -> tuple[Variable, ...]:
-        """Return the controls of another motion which the controls of this model replace under other names."""
+        """Return the controls of the original model that controls with other names replace in this model."""
         return ()
 
     def measured(self) -> tuple[Variable, ...]:
-        """Return the moving variables of which outputs are functions."""
+        """Return the variables of the motion on which outputs may depend."""
         return (*self.states, *self.controls)
 
     def carried(self) -> tuple[Output, ...]:
@@ -185,7 +185,7 @@ class Model:
         return origin.carried() if origin else ()
 
     def demanded(self) -> tuple[Demand, ...]:
-        """Return the demands on the parameters of this model, by itself or by the model that it is derived from."""
+        """Return the conditions that this model, or the model from which it is derived, imposes on its parameters."""
         origin, own = self.origin(), set(symbols_of(self.parameters))
         of_origin = origin.demanded() if origin else ()
         return (*self.demands, *(d for d in of_origin if d.margin.free_symbols <= own))
@@ -195,7 +195,7 @@ class Model:
         return ""
 
     def direction_cosines(self) -> sp.Matrix | None:
-        """Return the matrix of direction cosines, by the names under which steps state them; ``None`` without them."""
+        """Return the matrix of direction cosines, by the names that steps give them, or ``None`` if there are none."""
         return None
 
     def mode_groups(self) -> tuple[ModeGroup, ...]:
@@ -203,7 +203,7 @@ class Model:
         return ()
 
     def rest(self, derived: Derivation) -> Rest | None:
-        """Return the torques on a body at rest in its orbit, from its derivation; ``None`` for other models."""
+        """Return the torques on a body at rest in its orbit, taken from its derivation; ``None`` for other models."""
         return None
 
     def misfits(self) -> Iterable[str]:
@@ -237,15 +237,15 @@ class Model:
         """
 
     def statement(self) -> tuple[Paragraph, ...]:
-        """Return what a report states of the motion, besides variables, constants and outputs."""
+        """Return what a report says about the motion, in addition to variables, constants and outputs."""
         return ()
 
     def picture(self) -> Picture | None:
-        """Return the declared geometry as a picture; ``None`` where the model declares none that can be drawn."""
+        """Return a picture of the declared geometry, or ``None`` if there is no geometry that can be drawn."""
         return None
 
     def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
-        """Return what ``model:declared.name`` names, besides constants and costs; vectors as columns."""
+        """Return what ``model:declared.name`` addresses, except constants and costs; vectors are columns."""
         return {}
 
     def sentences(self) -> Mapping[str, Mapping[str, Mapping[str, str]]]:
@@ -285,7 +285,7 @@ class Problem:
     name
         Name of the problem in instances, and of the generated files.
     title
-        Title of one line.
+        Title, on a single line.
     model
         The motion.
     running_cost
@@ -334,7 +334,7 @@ class Problem:
 
     @property
     def end_conditions(self) -> tuple[sp.Expr, ...]:
-        """Return all psi that may vanish at the final time, each with a multiplier: constraints, then inequalities."""
+        """Return all psi with multipliers: the terminal constraints, then the terminal inequalities."""
         return (*self.terminal_constraints, *self.terminal_inequalities.values())
 
 

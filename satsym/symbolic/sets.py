@@ -33,7 +33,7 @@ class Free(AdmissibleSet):
 
 
 class Box(AdmissibleSet):
-    """The box of controls, each between its bounds: ``u = [lower, upper]`` in the ``[control]`` of an instance."""
+    """Controls, each between its bounds (a box): ``u = [lower, upper]`` in the ``[control]`` of an instance."""
 
     kind = "box"
 

@@ -57,7 +57,7 @@ def within(seconds: float | None, subject: str) -> Iterator[None]:
             yield
     except _TimeUp:
         model, step = _at[0]
-        advice = "write it more simply, name parts as definitions, or give it more time with --max-seconds"
+        advice = "simplify it, name parts of it as definitions, or allow more time with --max-seconds"
         raise DerivationError(f"{model}: the derivation exceeded {seconds:g} s in the step {step}; {advice}") from None
     finally:
         _deadlines.clear()

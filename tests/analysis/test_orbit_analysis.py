@@ -164,7 +164,7 @@ def test_units_change_nothing_but_numbers(exponent: int, gravity: int) -> None:
         ((1e300, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, "a result exceeds the range of floating-point numbers"),
         ((1e-300, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, "a result exceeds the range of floating-point numbers"),
         ((1.0, 0.0, 0.0), (0.0, 1e200, 0.0), 1.0, "a result exceeds the range of floating-point numbers"),
-        (np.ones((3, 2)), np.ones((3, 2)), 1.0, "2 orbits, but only one is allowed; give one"),
+        (np.ones((3, 2)), np.ones((3, 2)), 1.0, "2 orbits, but only one is allowed; give a single orbit"),
     ],
 )
 def test_what_is_no_orbit_is_refused_in_a_line(position, velocity, mu, complaint) -> None:

@@ -198,7 +198,7 @@ ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, 1.0)
 @pytest.mark.parametrize(
     ("which", "value", "message"),
     [
-        (0, (0.0, 0.0, 0.0), "position is the centre itself; start somewhere else"),
+        (0, (0.0, 0.0, 0.0), "the position is the centre itself; start elsewhere"),
         (0, (1.0, float("nan"), 0.0), "position is not finite; give numbers"),
         (1, (1.0, float("inf"), 0.0), "velocity is not finite; give numbers"),
         (
@@ -215,9 +215,13 @@ ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, 1.0)
         (2, -1.0, "mu is not positive; give the gravitational parameter of the centre"),
         (2, float("nan"), "mu is not finite; give numbers"),
         (3, float("inf"), "duration is not finite; give numbers"),
-        (3, "a day", "duration: the value is not an array of real numbers; give floats"),
-        (3, 1j, "duration: the value is not an array of real numbers; give floats"),
-        (0, (1e308, 1e308, 0.0), "the motion leaves the range of floats; check the units and the duration"),
+        (3, "a day", "duration: the value is not an array of real numbers; give real numbers"),
+        (3, 1j, "duration: the value is not an array of real numbers; give real numbers"),
+        (
+            0,
+            (1e308, 1e308, 0.0),
+            "the motion exceeds the range of floating-point numbers; check the units and the duration",
+        ),
     ],
 )
 def test_bad_input_is_refused_in_one_line(which: int, value: object, message: str):

@@ -358,7 +358,7 @@ def test_propositions_judge_claims_tables_and_algorithms(tmp_path: Path) -> None
         ("never(1) == 2", "", "unknown"),
         ("rank() == 2", "", "missing a required"),
         ("it will be stable", "", "not a proposition"),
-        ("rank(1) == a_letter", "", "means nothing here"),
+        ("rank(1) == a_letter", "", "is unknown here"),
         ("1 == 1", "rank(1) == 1", "leave out `holds`"),
         ("text['nowhere'] == 'x'", "", "no row"),
     ],

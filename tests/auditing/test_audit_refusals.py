@@ -23,7 +23,7 @@ def ledger(folder: Path, printed: str) -> Path:
 @pytest.mark.parametrize(
     ("printed", "complaint"),
     [
-        ("foo == 1", '"foo" means nothing here'),
+        ("foo == 1", '"foo" is unknown here'),
         ("valued(theta*I_y, 'lapan-classical') == 1", 'no numerical value for "theta"'),
         ("valued(I_y, 'double-integrator-time') == 1", "gives no damping in a table [classical]"),
         ("valued(I_y, 'nope') == 1", "nope"),

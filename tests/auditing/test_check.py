@@ -175,8 +175,8 @@ def test_matrices_are_compared_entry_by_entry(entry: str, verdict: str) -> None:
     [
         (r"\ddot x = \lim x", "hill", "a limit needs an arrow below it (character 11)"),
         (r"\ddot x = 3 +", "hill", "the formula is incomplete"),
-        ("x = = 3", "hill", "an expression is missing behind this sign (character 3)"),
-        ("= 3", "hill", "an expression is missing in front of this sign (character 1)"),
+        ("x = = 3", "hill", "an expression is missing after this sign (character 3)"),
+        ("= 3", "hill", "an expression is missing before this sign (character 1)"),
         ("x ++ 3 = 0", "hill", "two signs stand side by side (character 4)"),
         ("(" * 3000, "hill", "not closed"),
         ("{" * 3000, "hill", ""),

@@ -150,7 +150,7 @@ BAD = {
     "double == 1": "is a measurement",
     "s.__class__ == 1": "is not a permitted attribute",
     "lambda: 1": "lambda",
-    "[x for x in NUMBERS][0].n == y": "means nothing",
+    "[x for x in NUMBERS][0].n == y": "is unknown",
     "double(1, 2) == 3": "arguments",
     "doubel(1) == 3": "unknown",
     "all(1 == 1, 2)": "comprehension",

@@ -60,6 +60,17 @@ from tests.support.claims import DOCUMENTS, bench, changes, claims, judged, othe
 SEED = 7
 ALIAS = "_again"
 """Ends the second name of a letter."""
+LABELS = {
+    "claim: all for any": "claim: universal for existential quantifier",
+    "formula: factor": "formula: added factor",
+    "formula: inverted": "formula: inverted fraction",
+    "formula: letter": "formula: replaced letter",
+    "formula: lost": "formula: dropped term or factor",
+    "reference: row": "reference: cited item",
+    "rewriting: letter": "rewriting: equivalent letter",
+    "rewriting: order": "rewriting: order of terms and factors",
+}
+"""Rows of the table whose names in this file are too short for readers."""
 EQUIVALENT: dict[str, list[list[str]]] = {
     document: [[row, text] for row, texts in rows.items() for text in texts]
     for document, rows in tomllib.loads(Path(__file__).with_name("equivalent.toml").read_text(encoding="utf-8")).items()
@@ -392,9 +403,10 @@ def main(count: int) -> int:
             missed.append(f"not named: {document}: {trial.kind}: {trial.text}")
     print("| what is changed | tried | caught | named exactly |\n| --- | ---: | ---: | ---: |")
     for kind in sorted(tally):
-        print(f"| {kind} | {tally[kind]['tried']} | {tally[kind]['caught']} | {tally[kind]['named']} |")
+        name = LABELS.get(kind, kind)
+        print(f"| {name} | {tally[kind]['tried']} | {tally[kind]['caught']} | {tally[kind]['named']} |")
     total = sum((Counter(tally[kind]) for kind in tally if not kind.startswith("rewriting")), Counter())
-    print(f"| all slips | {total['tried']} | {total['caught']} | {total['named']} |")
+    print(f"| all errors | {total['tried']} | {total['caught']} | {total['named']} |")
     print("\n".join(["", *missed]))
     return 0
 

@@ -18,9 +18,9 @@ OPTIONS = {
     "a state without its table": ("r=1", 'did you mean "initial.r"?'),
 }
 CHANGES = {
-    "text without quotes": ('theta = "reference"', "theta = reference", "put text into quotes"),
+    "text without quotes": ('theta = "reference"', "theta = reference", "put text in quotes"),
     "a decimal comma": ("r = 1.1", "r = 1,1", "numbers are written with a decimal point"),
-    "a norm where there are bounds": ("[-0.05, 0.05]", "0.1\nmax_norm = 0.05", "u1: got 0.1; write both bounds"),
+    "a norm where there are bounds": ("[-0.05, 0.05]", "0.1\nmax_norm = 0.05", "u1: got 0.1; give both bounds"),
 }
 
 

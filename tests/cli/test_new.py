@@ -68,11 +68,11 @@ def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["two words"], 'NAME: got "two words"; write lower-case letters'),
+        (["two words"], 'NAME: got "two words"; use lower-case letters'),
         (["class"], "NAME: class is a Python keyword; choose another name, such as my_class"),
         (["random"], "NAME: random.py would hide a module that Python imports"),
         (["polar_orbit"], "NAME: polar_orbit is a model that comes with satsym"),
-        (["a/b", "--instance", "soft-return"], 'NAME: got "a/b"; write letters'),
+        (["a/b", "--instance", "soft-return"], 'NAME: got "a/b"; use letters'),
         (["mine", "--instance", "soft-retur"], 'no instance of this name; did you mean "soft-return"?'),
         (["mine", "--instance", "x/y.toml"], '--instance: "x/y.toml" is a path; give the name of a shipped instance'),
     ],

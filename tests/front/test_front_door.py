@@ -163,7 +163,7 @@ def test_what_is_refused_in_a_file_is_refused_in_python_by_the_same_line(
 @pytest.mark.parametrize(
     ("refused", "line"),
     [
-        (lambda: satsym.solve("soft-retur"), 'soft-retur: no instance of this name; did you mean "soft-return"'),
+        (lambda: satsym.solve("soft-retur"), 'soft-retur: there is no instance of this name; did you mean "soft'),
         (lambda: satsym.solve(PUSH), "a Problem is not an instance; make one with Instance.of"),
         (lambda: satsym.Instance.of(3), "nothing can be derived from 3; give a Problem"),
         (
@@ -171,7 +171,7 @@ def test_what_is_refused_in_a_file_is_refused_in_python_by_the_same_line(
             'model: "polar_orbi" is not a shipped model; did you mean',
         ),
         (lambda: pushed().with_(name="../a"), "is not a valid name of an instance"),
-        (lambda: pushed().with_(initial=3), "initial: got 3; write a table"),
+        (lambda: pushed().with_(initial=3), "initial: got 3; give a table"),
         (lambda: satsym.derive("polar"), 'did you mean "polar_orbit"'),
         (lambda: satsym.derive(PUSH)["costates.q"], 'no step "costates"; did you mean "costate_equations"'),
         (lambda: satsym.derive(PUSH)["costate_equations.w"], 'the step has no "w"'),

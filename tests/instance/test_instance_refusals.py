@@ -53,8 +53,8 @@ def written(folder: Path, **changes: str | None) -> Path:
         # tables and keys
         ("speling", "1", ["speling: unknown key"]),
         ("titel", '"x"', ["titel: unknown key", 'did you mean "title"?']),
-        ("tf", "1", ["tf: unknown key", "belongs under [time]"]),
-        ("steps", "1", ["steps: unknown key", "belongs under [solver]"]),
+        ("tf", "1", ["tf: unknown key", "belongs in the table [time]"]),
+        ("steps", "1", ["steps: unknown key", "belongs in the table [solver]"]),
         ("solver.tolerence", "1", ["[solver] tolerence: unknown key", 'did you mean "tolerance"?']),
         ("parameters.sigme", "1", ["[parameters] sigme", 'did you mean "sigma"?']),
         ("initial.rdot", "1", ["[initial] rdot", 'did you mean "r_dot"?']),
@@ -165,7 +165,7 @@ def test_a_bad_line_is_named(tmp_path: Path, key: str, value: str | None, words:
 
 
 def test_a_number_in_place_of_a_table_is_named(tmp_path: Path) -> None:
-    assert "time: got 5; write a table, [time]" in refusal(written(tmp_path, **{"time.tf": None, "time": "5"}))
+    assert "time: got 5; give a table, [time]" in refusal(written(tmp_path, **{"time.tf": None, "time": "5"}))
 
 
 def test_a_time_that_is_not_reachable_is_named(tmp_path: Path) -> None:

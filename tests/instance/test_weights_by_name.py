@@ -55,7 +55,7 @@ def test_the_cross_weight_of_an_instance_is_that_of_scipy_and_is_paid(tmp_path: 
 @pytest.mark.parametrize(
     ("wrong", "complaint"),
     [
-        ("N = [[0.1], [0.2], [0.0]]", r"\[lqr\] N: the matrix has the wrong shape; write a row for each state \(4\)"),
+        ("N = [[0.1], [0.2], [0.0]]", r"\[lqr\] N: the matrix has the wrong shape; give a row for each state \(4\)"),
         ("N = [[0.1, 0], [0.2, 0], [0, 0], [0, 0]]", "a number for each active input \\(1\\)"),
     ],
 )

@@ -238,7 +238,7 @@ def test_a_refusal_names_file_line_and_reason(legal: str, tmp_path: Path, trap: 
     text = legal.replace(FIRST, FIRST + "    while True:\n        pass\n", 1)
     line = text[: text.index("while True")].count("\n") + 1
     message = refuse(tmp_path, text, trap)
-    assert f'"./hostile": line {line} has a statement of another kind (While); ' in message
+    assert f'"./hostile": line {line} has a statement of an unsupported kind (While); ' in message
 
 
 DEEP = 5000

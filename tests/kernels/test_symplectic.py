@@ -213,7 +213,7 @@ def test_the_orbit_in_polar_coordinates_has_none_and_in_cartesian_ones_it_has():
         ("'coordinates': (\n        'q1',", "'coordinates': (\n        'q1',\n        'q1',", "coordinates and vel"),
         ("'coordinates': (\n        'q1',\n    ),\n", "", "coordinates and velocities that are not"),
         ("x0, p, x):", "x0, p, x_mid):", r"defines symplectic with other arguments than \(times, x0, p, x\)"),
-        ("q1_at[i] =", "q1_at[i + 2] =", "has an index of another kind"),
+        ("q1_at[i] =", "q1_at[i + 2] =", "has an index of an unsupported kind"),
     ],
 )
 def test_a_file_that_says_something_else_is_refused(old: str, new: str, reason: str):

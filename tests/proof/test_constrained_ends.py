@@ -228,9 +228,9 @@ def test_a_body_is_soonest_in_a_disc_of_the_phase_plane_with_one_switch() -> Non
 @pytest.mark.parametrize(
     ("said", "feature"),
     [
-        ("lambda_x", "other than states"),
-        ("nu_1", "other than states"),
-        ("given_y*y", "other than states"),
+        ("lambda_x", "more than states"),
+        ("nu_1", "more than states"),
+        ("given_y*y", "more than states"),
         ("(y if y > 0.0 else -y)", "defined piecewise or contains absolute values"),
         ("math.fabs(y)", "defined piecewise or contains absolute values"),
     ],

@@ -64,4 +64,4 @@ def test_a_free_parameter_beside_a_wall_is_refused() -> None:
     case = replace(case, free=(Unknown(Place.PARAMETER, "k", 0, positive=False),))
     proof = prove(case, lambda: pytest.fail("nothing need be solved"))
     assert proof.status is Outcome.BEYOND
-    assert "beside free parameters" in proof.reason
+    assert "together with free parameters" in proof.reason

@@ -234,7 +234,7 @@ def test_what_has_no_place_in_the_sky_is_refused_in_a_line(name: str, changes: d
     ("orbit", "complaint"),
     [
         ({}, r"\[orbit\] epoch: missing"),
-        ({"epoch": "yesterday"}, r'\[orbit\] epoch: got "yesterday"; write a date and a time in UTC'),
+        ({"epoch": "yesterday"}, r'\[orbit\] epoch: got "yesterday"; give a date and a time in UTC'),
         ({"epoch": "1066-10-14T09:00:00Z"}, r"\[orbit\] epoch: the year 1066 does not lie between 1900 and 2199"),
         ({"epoch": "2026-01-01T00:00:00Z", "centre": "Terra"}, r'\[orbit\] centre: "Terra" is not supported'),
         ({"epoch": "2026-01-01T00:00:00Z", "frame": "ECEF"}, r'\[orbit\] frame: "ECEF" is not supported'),
@@ -258,7 +258,7 @@ def test_without_its_library_a_format_says_what_to_install(
     for name in [name for name in sys.modules if name.split(".")[0] == module]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(BadInput, match=rf"^{named} is not installed; pip install 'satsym\[exchange\]'"):
+    with pytest.raises(BadInput, match=rf"^{named} is not installed; run pip install 'satsym\[exchange\]'"):
         exported(molniya, kind)
 
 

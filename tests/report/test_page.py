@@ -134,7 +134,7 @@ def test_bounds_and_ranges_are_stated_with_the_problem() -> None:
     assert re.search(rf'scope="row">u1</th>{CELL}-4e-08</td>{CELL}4e-08</td><td>km/s²</td>', page)
     ranged = problem(instance.load("return-to-geo-window"), None, (), load("en"))
     assert re.search(rf'scope="row">theta</th>{CELL}0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
-    assert "Time runs from 0 s to 86400 s." in page
+    assert "The motion lasts from 0 s to 86400 s." in page
     free = problem(instance.load("transfer-time"), None, (), load("en"))
     assert "the final time is free" in free
 

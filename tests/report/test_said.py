@@ -122,7 +122,7 @@ COMPOSED = (
     "the instance gives no numerical value for <a>",
     *("an integral", "a negation", "a product over an index", "a double sign", "a quantifier"),
     "the constraint of <name> by <value>",
-    "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
+    "<said_which> does not close: it has no period, and therefore neither a monodromy matrix nor multipliers.",
     *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
     *("structure <arcs>, from <said_origin>", "a table, [<name>]"),
     "estimated error <error> on <n> intervals, found by the direct search",
@@ -136,9 +136,9 @@ COMPOSED = (
     "<again> = [lower, upper]",
     *(f"<place>: terminal inequality <name>: {when} it" for when in MET_AT_NONE),
     *(f"[lqr] {which}, or allowed deviations in [lqr.allowed]" for which in WEIGHTS),
-    *(f"[time] <key>: <value> is {why} t0 = <start>; enter {what}" for why, what in MISPLACED),
+    *(f"[time] <key>: <value> is {why} t0 = <start>; give {what}" for why, what in MISPLACED),
     *(
-        f"[lqr] <name>: {what}; write <size> numbers (the diagonal) or <rows> rows of <each> numbers"
+        f"[lqr] <name>: {what}; give <size> numbers (the diagonal) or <rows> rows of <each> numbers"
         for what in MISSHAPEN
     ),
     "[lqr] <key>: no control input remains; name at least one control",
@@ -177,7 +177,7 @@ def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None
 
 MADE_OF_PARTS = {
     "<>: there are no results <>in <>; write them with `satsym <> <> --plot`, or give their folder with --from",
-    "[time] <>: <> <> t0 = <>; enter <>",
+    "[time] <>: <> <> t0 = <>; give <>",
 }
 """Refusals with texts among their values, which are translated as they are put together: see what is composed above."""
 
@@ -277,8 +277,8 @@ def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
             "k.py:3: write powers with **, as in x**3; ^ is not the power operator in Python",
             "^ bukan pangkat dalam Python",
         ),
-        ("x.toml: [final] r: got a list of 2; write a number", "tertulis daftar dengan 2 isian"),
-        ('x.toml: [final] r: got "a list of 2"; write a number', 'tertulis "a list of 2"'),
+        ("x.toml: [final] r: got a list of 2; give a number", "tertulis daftar dengan 2 isian"),
+        ('x.toml: [final] r: got "a list of 2"; give a number', 'tertulis "a list of 2"'),
         ("l.toml:3: row 1: got a table; write an expression in quotes", "tertulis tabel"),
     ],
 )

@@ -197,7 +197,7 @@ def damaged(folder: Path, **changes: Any) -> None:
 )
 def test_other_arrays_are_refused(solution: Solution, folder: Path, changes: dict[str, Any]) -> None:
     damaged(folder, **changes)
-    with pytest.raises(BadInput, match=r"trajectory\.npz: .*; `satsym solve X --out .*` writes it anew"):
+    with pytest.raises(BadInput, match=r"trajectory\.npz: .*; `satsym solve X --out .*` writes it again"):
         trajectory.read(solution.instance, folder)
 
 

@@ -113,7 +113,7 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         ({"b": [1, 2]}, r"\[continuation\] b: .*has no numerical quantity of this name"),
         ({"a": [1, 2], "parameters.a": [1, 3]}, r"\[continuation\] parameters.a: is given twice, as a and as param"),
         ({"a": [1, 1]}, r"\[continuation\] a: both values are 1"),
-        ({"a": 1}, r"\[continuation\] a: got 1; write the first and the last value"),
+        ({"a": 1}, r"\[continuation\] a: got 1; give the first and the last value"),
         ({"tf": [1, -1]}, r"\[continuation\]: tf = -1 is not after t0 = 0"),
         ({"final.x": [1, 2]}, r"\[continuation\] final.x: the instance gives no numerical value for this key"),
     ],

@@ -347,7 +347,7 @@ def test_what_is_saved_comes_back_with_its_ends(tmp_path: Path):
         ({"x": [0.0, 1.0, 2.0]}, {}, r"\[final\] x: got"),
         ({"x": [0.0, 1.0]}, {"initial": {"x": "free", "v": 0.0}}, "cannot be combined with"),
         ({"x": [0.0, 1.0]}, {"solver": {"free_angles": ["x"]}}, "angle|turn"),
-        ({"x": [0.0, 1.0]}, {"solver": {"method": "sweep"}}, "cannot be swept for"),
+        ({"x": [0.0, 1.0]}, {"solver": {"method": "sweep"}}, "the sweep method does not support limits"),
     ],
 )
 def test_what_is_no_range_is_refused(final: dict[str, Any], more: dict[str, Any], message: str):

@@ -40,7 +40,7 @@ def solve(instance, progress=None):
     )
 '''
 
-RECORD = example("A method that solves", "python").replace("satsym.solvers.", "")
+RECORD = example("A solution method", "python").replace("satsym.solvers.", "")
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def test_adding_a_method_is_one_record(coasting: Method, tmp_path: Path) -> None
     assert not found.u.any()
     with pytest.raises(BadInput, match=r"case\.toml: time\.tf: coasting never ends"):
         solve(instance.load(str(case(tmp_path, "coasting", tf='"free"'))))
-    with pytest.raises(BadInput, match=r'\[solver\] method: got "gliding"; write one of "auto", .*, "coasting"'):
+    with pytest.raises(BadInput, match=r'\[solver\] method: got "gliding"; give one of "auto", .*, "coasting"'):
         instance.load(str(case(tmp_path, "gliding")))
 
 
@@ -88,7 +88,7 @@ def test_the_command_line_lists_and_takes_a_method_that_was_added(coasting: Meth
 
 
 def test_without_the_record_there_is_no_such_method(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match=r'\[solver\] method: got "coasting"; write one of "auto", "sweep", "colloc'):
+    with pytest.raises(BadInput, match=r'\[solver\] method: got "coasting"; give one of "auto", "sweep", "colloc'):
         instance.load(str(case(tmp_path, "coasting")))
 
 
@@ -118,10 +118,18 @@ def test_every_kind_of_controls_has_one_method_to_begin_with() -> None:
 @pytest.mark.parametrize(
     ("name", "method", "line"),
     [
-        ("soft-return", "bang-bang", 'solver.method: "bang-bang" is for controls that enter without a square; use '),
-        ("return-to-orbit", "sweep", "a given final r, r_dot, theta, theta_dot cannot be swept for; leave it free and"),
-        ("double-integrator-time", "linear", 'which "linear" cannot find; use "bang-bang"'),
-        ("ends-5-free", "sweep", "time.tf: a free final time cannot be swept for; use method "),
+        (
+            "soft-return",
+            "bang-bang",
+            'solver.method: "bang-bang" is for controls whose squares do not enter the cost; use ',
+        ),
+        (
+            "return-to-orbit",
+            "sweep",
+            "a given final r, r_dot, theta, theta_dot is not supported by the sweep method; leave it",
+        ),
+        ("double-integrator-time", "linear", 'which "linear" does not support; use "bang-bang"'),
+        ("ends-5-free", "sweep", "time.tf: the sweep method does not support a free final time; use method "),
     ],
 )
 def test_what_a_method_cannot_solve_is_refused_in_a_line(name: str, method: str, line: str) -> None:

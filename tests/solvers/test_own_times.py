@@ -87,7 +87,7 @@ def test_a_guess_of_a_free_final_time_may_be_set_where_there_is_none() -> None:
     case = instance.load("ends-4-rendezvous")
     assert case.tf_guess is None
     assert changed(case, {"time.tf_guess": 4.0}).tf_guess == 4.0
-    with pytest.raises(BadInput, match=r"^time\.tf_guess: -1 is not after t0 = 0; enter a later time$"):
+    with pytest.raises(BadInput, match=r"^time\.tf_guess: -1 is not after t0 = 0; give a later time$"):
         changed(case, {"time.tf_guess": -1.0})
     with pytest.raises(BadInput, match=r"^time\.tf_guess: ends-1-given gives the final time; set time\.tf, or"):
         changed(instance.load("ends-1-given"), {"time.tf_guess": 4.0})

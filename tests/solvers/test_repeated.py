@@ -57,7 +57,7 @@ def test_the_same_again_with_other_initial_states(pair: Pair, cold: bool):
         for _ in range(3):
             initial = tuple((np.array(case.initial) + size * rng.uniform(-1.0, 1.0, 4)).tolist())
             answer = machine.solve(initial=initial, cold=cold)
-            assert answer.origin == ("straight line" if cold else "last answer")
+            assert answer.origin == ("straight line" if cold else "last solution")
             matches(answer, pair.solve(replace(case, initial=initial)))
 
 
@@ -160,5 +160,5 @@ def test_other_models_as_well(name: str, nudge: float, means: str):
     for sign in (1.0, -1.0):
         initial = (case.initial[0] + sign * nudge, *case.initial[1:])
         answer = machine.solve(initial=initial)
-        assert answer.origin == "last answer"
+        assert answer.origin == "last solution"
         matches(answer, by_search.collocation(replace(case, initial=initial)))

@@ -259,7 +259,7 @@ def test_a_guess_of_the_control_is_where_it_starts():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"final": {"r": 1.0, "theta": "reference"}}, "a given final r, theta cannot be swept for"),
+        ({"final": {"r": 1.0, "theta": "reference"}}, "a given final r, theta is not supported by the sweep method"),
         ({"tf": None}, "free final time"),
     ],
 )

@@ -73,6 +73,21 @@ def test_where_starts_lead_to_several_swings_further_ones_find_the_cheapest(tmp_
 
 
 @pytest.mark.slow
+def test_a_pendulum_that_ends_with_a_speed_may_turn_over(tmp_path: Path) -> None:
+    """It starts near its rest and is damped; the least cost of motions that do not turn over is 0.948166.
+
+    Ipopt, 90 Hermite-Simpson steps, the best of twelve drawn starts: 0.79404152, one turn further.
+    """
+    damped = replace(_swing("damped", -sin(a) - b / 10), control_set="free")
+    found = solve(
+        build(tmp_path, damped, "[initial]\na = -0.0336\nb = 0.1905\n[final]\nb = 2.4099\n[time]\ntf = 11.8185\n")
+    )
+    assert found.objective == pytest.approx(0.79404152, rel=1e-6)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.slow
 def test_an_end_that_one_control_alone_reaches_is_not_called_out_of_reach(tmp_path: Path) -> None:
     """Pushes to one side, none longer than half a swing: they add up to two units, all of them at the bound."""
     found = solve(_case(tmp_path, OSCILLATOR, -1.0, 8.0, (0.0, 0.5)))

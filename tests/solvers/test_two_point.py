@@ -373,8 +373,8 @@ def test_the_time_limit_is_kept(name, seconds):
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"method": "sweep"}, "a free final time cannot be swept for"),
-        ({"method": "bang-bang"}, "is for controls that enter without a square"),
+        ({"method": "sweep"}, "the sweep method does not support a free final time"),
+        ({"method": "bang-bang"}, "is for controls whose squares do not enter the cost"),
     ],
 )
 def test_methods_that_do_not_fit_are_refused(changed, words):

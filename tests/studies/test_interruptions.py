@@ -294,7 +294,7 @@ def test_a_study_that_is_interrupted_says_how_to_go_on(
 
     monkeypatch.setattr(reports, "carry_out", interrupt)
     assert main(["study", NAME, "--vary", "initial.r=0.9:1.1:4", "--out", str(tmp_path)]) == 130
-    assert capsys.readouterr().err.splitlines() == ["satsym: interrupted; --resume goes on with what is done"]
+    assert capsys.readouterr().err.splitlines() == ["satsym: interrupted; repeat the command with --resume to continue"]
 
 
 def test_it_is_said_how_far_a_study_is(tmp_path: Path) -> None:

@@ -186,10 +186,10 @@ DRAWN = {"normal": {"initial.r": (1.0, 0.1)}}
 @pytest.mark.parametrize(
     ("said", "line"),
     [
-        ({"vary": {"initial.r": 42000.0}}, "initial.r: got 42000; write text such as"),
+        ({"vary": {"initial.r": 42000.0}}, "initial.r: got 42000; give text such as"),
         ({"vary": [("initial.r", (1, 2, 3))]}, "vary: got"),
         ({"vary": {"initial.r": (0.9, None, 2)}}, "initial.r: "),
-        (DRAWN | {"sample": 2.5}, "sample: got 2.5; write a whole number"),
+        (DRAWN | {"sample": 2.5}, "sample: got 2.5; give a whole number"),
         (DRAWN | {"sample": "2"}, "sample: got"),
         (DRAWN | {"sample": 0}, "write a whole number"),
         (DRAWN | {"sample": 3, "method": "qmc"}, '"sobol", "lhs", "random"'),

@@ -54,7 +54,7 @@ class Orbit:
         return -y[5] / self.c[0], -y[7] / (self.c[1] * y[0])
 
     def error(self, x: Array) -> Array:
-        """Final state minus reference."""
+        """Final state deviation from the reference."""
         return x - np.array([self.sigma, 0.0, self.omega * self.tf, self.omega])
 
     def costates_wanted(self, x: Array) -> Array:

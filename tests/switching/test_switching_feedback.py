@@ -143,7 +143,7 @@ def test_pulses_wait_where_the_error_is_allowed() -> None:
         (replace(LINE, final={"q": 0.0}), "[final] q_dot: missing"),
         (replace(LINE, lower=(0.0,)), "with 0 between them"),
         (replace(LINE, upper=(math.inf,)), "the bounds -1 and inf must be finite"),
-        (replace(LINE, initial=(5e-4, 0.0)), "within the deadband of its target already"),
+        (replace(LINE, initial=(5e-4, 0.0)), "is already within the deadband of its target"),
         (instance.load("double-integrator-fuel"), "no switching curve in closed form"),
     ],
     ids=["no table", "no target", "one way", "no bound", "there already", "no curve"],

@@ -185,8 +185,8 @@ BAD = {
     "I_x": (40.0, "exceeds the sum of the other two"),
     "I_wy": (0.9, "one moment of inertia of the wheel exceeds"),
     "J_y": (6.5, "at least as much inertia as the whole satellite"),
-    "K_x": (0.0, "enter a positive value"),
-    "J_z": (-1.0, "enter a positive value"),
+    "K_x": (0.0, "give a positive value"),
+    "J_z": (-1.0, "give a positive value"),
 }
 
 

@@ -364,7 +364,7 @@ def test_a_module_names_the_functions_of_linear_models_it_has():
 
 def test_a_module_with_functions_that_no_linear_model_has_is_refused(repository: Path):
     text = (repository / "generated" / "saddle.py").read_text(encoding="utf-8")
-    with pytest.raises(BadInput, match="functions of linear models that none has"):
+    with pytest.raises(BadInput, match="functions of linear models that no linear model has"):
         from_text(text.replace("'routh_column',", "'root_column',"), "saddle.py")
     with pytest.raises(BadInput, match="does not contain eigenvalues_batch"):
         from_text(text[: text.index("def eigenvalues_b")] + text[text.index("def transition_matrix_b") :], "saddle.py")

@@ -61,7 +61,7 @@ PROBLEMS = (effort,)
             "CONTROLS",
             'got the kind .turn.; write "real" or "angle"',
         ),
-        ('"u", "u", "m/s^2"', '"u", " ", "m/s^2"', "CONTROLS", "latex is ' '; write its LaTeX, each { closed"),
+        ('"u", "u", "m/s^2"', '"u", " ", "m/s^2"', "CONTROLS", "latex is ' '; write its LaTeX with matching braces"),
         ('"u", "u", "m/s^2"', '"u", "u}{", "m/s^2"', "CONTROLS", "latex is 'u}{'; write its LaTeX"),
         ("u - k * v", "u - 'k'(v)", "v: u", "not callable"),
     ],

@@ -376,7 +376,7 @@ def test_a_problem_needs_a_control() -> None:
 
 
 def test_a_control_set_is_one_of_three() -> None:
-    assert complaint(problem(control_set="boxx")) == ('task: control_set: got "boxx"; write "free" or "box" or "ball"')
+    assert complaint(problem(control_set="boxx")) == ('task: control_set: got "boxx"; give "free" or "box" or "ball"')
 
 
 def test_roots_of_states_need_positive_states() -> None:

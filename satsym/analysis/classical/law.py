@@ -147,7 +147,7 @@ def simulate(instance: Instance) -> Simulation:
         If there is no such law, no final time, or one that is very long for so fast a loop.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; enter a number")
+        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; give a number")
     found = loop(instance)
     if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
         raise BadInput(

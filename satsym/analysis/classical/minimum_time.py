@@ -152,7 +152,7 @@ def plant(instance: Instance, feedback: str) -> Plant:
     if not -np.inf < low < 0.0 < high < np.inf:
         raise BadInput(
             f"{name}: [control] {spec.control_names[0]}: the bounds {low:g} and {high:g} must be finite, with "
-            "0 between them; a switching feedback must be able to push in both directions"
+            "0 between them; a switching feedback needs a control that can act in both directions"
         )
     final = final_argument(instance)
     target = final[2 * len(spec.states) + position], final[2 * len(spec.states) + rate]
@@ -196,8 +196,8 @@ def within_already(plant: Plant) -> BadInput:
     """Return the refusal of an instance that starts within the deadband and states no final time."""
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
-        f"{case.called}: [initial] {name} lies within the deadband of its target already; give another value, or a "
-        "final time to simulate to"
+        f"{case.called}: [initial] {name} is already within the deadband of its target; give another value, or a "
+        "final time for the simulation"
     )
 
 

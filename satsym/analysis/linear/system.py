@@ -81,7 +81,7 @@ class LinearSystem:
         try:
             import control
         except ImportError:
-            raise BadInput("python-control is not installed; pip install 'satsym[control]'") from None
+            raise BadInput("python-control is not installed; run pip install 'satsym[control]'") from None
         return control.ss(
             self.A,
             self.B,

@@ -157,7 +157,8 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
     given = checked(position, velocity, mu, 0.0)
     if given.shape:
         raise BadInput(
-            f"position, velocity, mu: these arrays describe {given.mu.size} orbits, but only one is allowed; give one"
+            f"position, velocity, mu: these arrays describe {given.mu.size} orbits, but only one is allowed; give a "
+            "single orbit"
         )
     states, (length,), (speed,) = given.scaled()
     scalars = _scalars(states)

@@ -86,8 +86,8 @@ class Floquet:
             )
         if self.status == NO_PERIOD:
             return (
-                f"{_called(self.orbit)} does not close: without a period there is no monodromy matrix, and there "
-                f"are no multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
+                f"{_called(self.orbit)} does not close: it has no period, and therefore neither a monodromy matrix "
+                f"nor multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
             )
         closed = (
             "All six multipliers of a closed orbit are exactly 1, because the neighbouring orbits are closed "

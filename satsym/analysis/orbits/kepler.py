@@ -84,7 +84,9 @@ def propagate(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration:
         positions, velocities = positions * length, velocities * speed
     refuse_first(collides, given.shape, "the motion is radial and meets the centre; shorten the duration")
     lost = ~(np.isfinite(positions).all(axis=0) & np.isfinite(velocities).all(axis=0))
-    refuse_first(lost, given.shape, "the motion leaves the range of floats; check the units and the duration")
+    refuse_first(
+        lost, given.shape, "the motion exceeds the range of floating-point numbers; check the units and the duration"
+    )
     return positions.reshape(3, *given.shape), velocities.reshape(3, *given.shape)
 
 

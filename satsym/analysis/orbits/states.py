@@ -72,8 +72,8 @@ def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: A
     except ValueError:
         raise BadInput(
             f"position, velocity, mu, duration: the shapes {', '.join(str(a.shape) for a in arrays.values())}, "
-            "without the axis of the three components, cannot be broadcast together; give the same number of "
-            "each, or a single one for all"
+            "without the axis of the three components, cannot be broadcast together; give equally many of each, "
+            "or a single one for all orbits"
         ) from None
     r, v = (_stretched(a, shape) for a in vectors)
     m, dt = (np.broadcast_to(a, shape).reshape(-1) for a in scalars)
@@ -81,7 +81,7 @@ def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: A
         bad = ~np.isfinite(values)
         refuse_first(bad.any(axis=0) if bad.ndim > 1 else bad, shape, f"{name} is not finite; give numbers")
     refuse_first(m <= 0.0, shape, "mu is not positive; give the gravitational parameter of the centre")
-    refuse_first((r == 0.0).all(axis=0), shape, "position is the centre itself; start somewhere else")
+    refuse_first((r == 0.0).all(axis=0), shape, "the position is the centre itself; start elsewhere")
     return States(r, v, m, dt, shape)
 
 
@@ -100,7 +100,7 @@ def _numbers(name: str, value: ArrayLike) -> Array:
         if array.dtype.kind not in "iuf":
             raise TypeError
     except (TypeError, ValueError):
-        raise BadInput(f"{name}: the value is not an array of real numbers; give floats") from None
+        raise BadInput(f"{name}: the value is not an array of real numbers; give real numbers") from None
     return array.astype(np.float64)
 
 

@@ -195,7 +195,7 @@ def _stabilising(given: LinearSystem, A: Array, Q: Array, R: Array) -> Refined:
     try:
         found = riccati.stabilising(A, given.B, Q, R)
     except riccati.NoSolution:
-        why = _obstacle(given, A, Q, R) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
+        why = _obstacle(given, A, Q, R) or "[lqr] Q, R: no accurate gain was found; choose weights of more similar size"
         raise BadInput(why) from None
     slowest, all_values = found.eigenvalues.real.max(), np.concatenate([found.eigenvalues, np.linalg.eigvals(A)])
     if slowest > -DOUBTFUL * np.abs(all_values).max() and (why := _obstacle(given, A, Q, R)):

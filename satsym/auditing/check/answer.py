@@ -119,7 +119,7 @@ class Subject:
                 return self._of_matrix(statement)
             return self._of_equation(statement)
         except (BadInput, RecursionError) as error:
-            why = "it is nested too deep" if isinstance(error, RecursionError) else str(error)
+            why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
             return self.answered(statement, "undecided", why)
 
     def answered(

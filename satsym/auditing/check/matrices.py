@@ -47,7 +47,7 @@ def matrix_answer(
     if not count:
         return "right", address, "", None
     if 2 * count > len(rows) * len(rows[0]):
-        return "undecided", "", f"no {size} matrix of {derived.record.name} comes near it", None
+        return "undecided", "", f"no {size} matrix of {derived.record.name} resembles it", None
     names = {tree.name: Sym(name) for name, tree in meanings.items() if isinstance(tree, Sym)}
     theirs = [
         [substituted(entries[i][j], names) if (i, j) in wrong else cell for j, cell in enumerate(row)]

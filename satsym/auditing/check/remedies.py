@@ -70,7 +70,7 @@ def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
         long = sum(size(side) for tree in (named, fit.target.equation) for side in cells(tree)) > _SHORT_EQUATION
         return budget.within(_LIMIT, lambda: _sought(bench, row, derivatives, subject), calls=long)
     except budget.OverBudget:
-        return Found(False, "it is too long for a search of the edit", None, NO_EDIT)
+        return Found(False, "it is too long to search for the error in it", None, NO_EDIT)
 
 
 def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Subject) -> Found:

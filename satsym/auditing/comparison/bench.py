@@ -257,7 +257,7 @@ class Bench:
         if name not in shared.symbols and name not in shared.definitions and name not in ("I", "pi"):
             raise BadInput(
                 f"{shown(name)} is not a name of {' or '.join(self.ledger.models) or 'a derivation'}; "
-                f"{suggestion(name, sorted(shared.symbols))} (a symbol of your own: [symbols])"
+                f"{suggestion(name, sorted(shared.symbols))} (declare a symbol of your own in [symbols])"
             )
         return shared.tree(name) if kind is Calculus else shared.expression(name)
 

@@ -126,7 +126,7 @@ class Plan(ABC):
                 found.append(point)
                 if len(found) == count:
                     return found
-        raise field.Undecided("no point at which what is printed has a value")
+        raise field.Undecided("no point was found at which the printed expression has a value")
 
     def may_hold(self, cells: Cells) -> bool:
         """Return whether cells are right at a few random points; fast enough for the search of edits."""

@@ -203,7 +203,7 @@ def _fill_matrix(entry: _Entry) -> None:
     side = entry.statement.rhs if isinstance(entry.statement, Equality) else entry.statement
     rows = side.entries if isinstance(side, Grid) else ()
     if not rows or not entry.answer.address or entry.answer.fit is None:
-        raise BadInput(entry.answer.diagnosis or "no matrix of the model comes near it")
+        raise BadInput(entry.answer.diagnosis or "no matrix of the model resembles it")
     lines = [[written(cell) for cell in row.entries] if isinstance(row, Grid) else [written(row)] for row in rows]
     entry.table |= {"kind": "matrix", "printed": lines, "holds": entry.answer.address}
     for name, tree in entry.subject.meant(side, {}, entry.answer.fit.guess).items():
@@ -338,7 +338,7 @@ def _written(
         blocks.append(_block(entry))
         rows.append({**entry.table, "verdict": entry.answer.verdict})
         if not entry.table.get("holds"):
-            undecided.append((entry.display.place, entry.answer.diagnosis or "it says nothing of the model"))
+            undecided.append((entry.display.place, entry.answer.diagnosis or "it says nothing about the model"))
     blocks += [block for key, block in confirmed.items() if key not in used]
     head = _head(path, model, before, old, letters) + _other_scope(rates, old)
     return Draft("\n".join([head, *blocks]), rows, len(confirmed), source.unread, undecided)
@@ -361,8 +361,8 @@ def _head(path: Path, model: str, before: str, old: Mapping[str, Any], letters: 
     key = re.sub(r"[^A-Za-z0-9]+", "_", path.stem).strip("_") or "document"
     key = key if key[0].isalpha() else f"document_{key}"
     lines = [
-        f"# What {path.name} prints, drafted by satsym read; nothing here is a verdict.",
-        "# A row is confirmed by taking out its line `draft = true`; reading again keeps confirmed rows.",
+        f"# What {path.name} prints, drafted by satsym read; this file contains no verdicts.",
+        "# To confirm a row, delete its line `draft = true`; confirmed rows are kept if the document is read again.",
         "format = 1\n\n[document]",
         f"key = {_toml(key[:40])}",
         f"title = {_toml(path.stem)}",
@@ -384,10 +384,10 @@ def _block(entry: _Entry) -> str:
     shown = " ".join(_UNSEEN.sub(" ", entry.display.text).split())[:300]
     lines = [f"{key} = {_toml(value)}" for key, value in entry.table.items() if key != "original"]
     capitals = [one for one in entry.subject.reading.products if one in entry.answer.letters]
-    doubts = [f"# {one} was read as a product; --let {one}=NAME makes it one name" for one in capitals]
+    doubts = [f"# {one} was read as a product; --let {one}=NAME makes it a single name" for one in capitals]
     if entry.table.get("holds"):
         return "\n".join(["[[row]]", "draft = true", *doubts, *lines, f"original = {_toml(shown)}"]) + "\n"
-    why = entry.answer.diagnosis or "it says nothing of the model"
+    why = entry.answer.diagnosis or "it says nothing about the model"
     told = [f"# {shown}", f"# not understood: {why}; complete it", *doubts, *(f"# {line}" for line in lines)]
     return "\n".join(told) + "\n"
 

@@ -16,7 +16,7 @@ from satsym.wording import printable
 CONSTANT = "constant"
 """Name of a constant of unspecified value: a quantity equated with it does not change in time."""
 
-MIXED_BRACKETS = "brackets of different kinds around an expression, as in a half-open interval, are not supported"
+MIXED_BRACKETS = "brackets of different kinds, as around a half-open interval, are not supported"
 
 
 @dataclass

@@ -102,7 +102,7 @@ class Parser(SumCursor):
     def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
         """Read the divisor after a slash, and return the quotient."""
         if self._bare_end == self._i:
-            raise Unread("the argument of a function in front of a slash needs brackets", slash.at)
+            raise Unread("the argument of a function before a slash needs brackets", slash.at)
         self._i += 1
         following = self._peek()
         if slash.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):

@@ -69,7 +69,7 @@ class LetterCursor(Cursor):
             return False
         timed = self._peek(2) is not None and self._found[self._i + 2].text in ("t", "k", "tau") and self._is(")", 3)
         if token.kind == "letter" and self._is("(", 1) and not timed:
-            raise Unread("this delta could be a difference or a factor in front of a bracket", sign.at)
+            raise Unread("this delta could denote a difference, or be a factor before a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
             return sign.text == "Delta" or behind is None or behind.kind != "letter"

@@ -54,7 +54,7 @@ class RefusalCursor(OperatorCursor):
         """Refuse input after an expression that is no factor: units, powers of ten, arguments of a transform."""
         before, after = self._found[self._i - 1], self._peek(1)
         if last in (Sym("delta"), Sym("Delta")) and token.text in words.INTEGRALS:
-            raise Unread("this delta could be a difference or a factor in front of an integral", before.at)
+            raise Unread("this delta could denote a difference, or be a factor before an integral", before.at)
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
             if said in words.UNITS and (plain or constant(last) is not None):

@@ -50,7 +50,7 @@ def lines(found: Sequence[Token]) -> list[Line]:
             first = line.sides[0][0] if line.sides[0] else None
             signed = first is not None and first.kind == "sign" and first.text in "+-"
             if before is None and not line.sides[0]:
-                raise Unread("an expression is missing in front of this sign", piece[0].at)
+                raise Unread("an expression is missing before this sign", piece[0].at)
             if before is not None and not line.sides[0]:  # a line that begins with a sign of relation
                 before.sides += line.sides[1:]
                 before.signs += line.signs
@@ -370,7 +370,7 @@ def _sides(found: Sequence[Token]) -> Line:
     sides = split(found, divides)
     for sign, side in zip(signs, sides[1:], strict=True):
         if not side:
-            raise Unread("an expression is missing behind this sign", sign.at)
+            raise Unread("an expression is missing after this sign", sign.at)
     return Line(sides, [_sign(sign) for sign in signs])
 
 

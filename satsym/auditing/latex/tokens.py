@@ -113,7 +113,11 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
     for token in found:
         depth += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
         if depth > MAX_DEPTH or depth < 0:
-            why = f"braces are nested more than {MAX_DEPTH} levels deep" if depth > 0 else "this brace closes nothing"
+            why = (
+                f"braces are nested more than {MAX_DEPTH} levels deep"
+                if depth > 0
+                else "this closing brace has no opening brace"
+            )
             raise Unread(why, token.at)
         _refuse_long(token)
     if depth:

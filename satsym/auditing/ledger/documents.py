@@ -71,7 +71,7 @@ def locate(name_or_path: str) -> Path:
     except (OSError, ValueError):
         pass
     known = suggestion(name_or_path, [path.name for path in shipped()])
-    raise BadInput(f"{printable(name_or_path, 200)}: there is no ledger of this name and no such file; {known}")
+    raise BadInput(f"{printable(name_or_path, 200)}: there is neither a ledger nor a file of this name; {known}")
 
 
 def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> None:

@@ -184,7 +184,7 @@ class _Reader:
             if not table.holds:
                 raise BadInput("missing; write an address, an expression over addresses, or a proposition")
             if table.kind == "claim":
-                raise BadInput("a claim is judged by the proposition that it prints; leave out `holds`")
+                raise BadInput("a claim is judged by the proposition that it states; leave out `holds`")
             if table.kind == "table":
                 raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
         found: dict[str, Any] = {}
@@ -206,7 +206,7 @@ class _Reader:
         with self._telling("row", "printed", index, row.key):
             if not table.printed or (not own and not isinstance(table.printed, str)):
                 raise BadInput(
-                    "missing; write the proposition in quotes" if not own else "missing; write the printed text"
+                    "missing; write the proposition in quotes" if not own else "missing; give the printed text"
                 )
             row = replace(row, printed=rows.readable(table, scope) if own else None)
         found: dict[str, Any] = {}

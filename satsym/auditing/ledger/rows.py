@@ -25,7 +25,7 @@ def printed(table: RowTable, scope: Scope) -> Formula | None:
         quantities.printed_number(_one_text(table))
     if table.kind not in (*FORMULAS, "matrix"):
         if not table.printed:
-            raise BadInput("missing; write the printed text")
+            raise BadInput("missing; give the printed text")
         return None
     if table.kind in FORMULAS:
         formula = reading.statement(_one_text(table))

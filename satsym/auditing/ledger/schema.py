@@ -128,12 +128,12 @@ def table(tree: Any, kind: type[Any]) -> Any:
             raise WrongKey(key, f"unknown key; {suggestion(key, fields)}")
     for key, entry in fields.items():
         if entry.required and key not in tree:
-            raise WrongKey(key, f"missing; write {_wanted(key, entry.type)}")
+            raise WrongKey(key, f"missing; give {_wanted(key, entry.type)}")
     for key, value in tree.items():
         try:
             msgspec.convert(value, fields[key].type)
         except msgspec.ValidationError:
-            raise WrongKey(key, f"got {shown(value)}; write {_wanted(key, fields[key].type)}") from None
+            raise WrongKey(key, f"got {shown(value)}; give {_wanted(key, fields[key].type)}") from None
     return msgspec.convert(tree, kind)
 
 

@@ -43,7 +43,8 @@ def check(tree: Formula, own: Collection[str]) -> None:
             if isinstance(part, Sym) and part.name not in own and part.name not in _shipped():
                 hint = suggestion(part.name, sorted(own))
                 raise BadInput(
-                    f"no derivation defines the name {shown(part.name)}; {hint} (a symbol of your own: [symbols])"
+                    f"no derivation defines the name {shown(part.name)}; {hint} (declare a symbol of your own in "
+                    "[symbols])"
                 )
             if isinstance(part, Call) and part.function == "at":
                 (argument,) = part.arguments

@@ -140,7 +140,7 @@ def order(lines: Sequence[str], along: Record | None = None) -> int:
         raise Undecided("the steps have no error that could be measured")
     found = float(np.log(errors[0] / errors[1]) / np.log(_STEPS[0] / _STEPS[1])) - 1.0
     if abs(found - round(found)) > _SLACK:
-        raise Undecided(f"the measured order is {found:.2f}, near no whole number")
+        raise Undecided(f"the measured order is {found:.2f}, which is not close to a whole number")
     return round(found)
 
 

@@ -60,7 +60,7 @@ def cost(of: Any, gain: Any, start: Any) -> float:
     (a, b, q, r), gains = _parts(of), np.atleast_2d(numeric(gain)).astype(float)
     loop, x = a - b @ gains, np.asarray(numeric(start), dtype=float).ravel()
     if np.linalg.eigvals(loop).real.max() >= 0.0:
-        raise Undecided("the loop is not stable, and what it costs has no bound")
+        raise Undecided("the loop is not stable, so its cost is infinite")
     return float(x @ solve_continuous_lyapunov(loop.T, -(q + gains.T @ r @ gains)) @ x)
 
 

@@ -92,7 +92,7 @@ def reached(motion: Record, aim: float) -> float:
     t, gap = motion.part("t"), motion.part("angle") - aim
     crossed = np.flatnonzero(gap[1:] * gap[:-1] <= 0.0)
     if not len(crossed):
-        raise Undecided("the angle never comes to its aim")
+        raise Undecided("the angle never reaches its target")
     k = int(crossed[0])
     return float(t[k] + (t[k + 1] - t[k]) * gap[k] / (gap[k] - gap[k + 1]))
 

@@ -101,9 +101,9 @@ class _Walker:
         except BadInput as error:
             raise type(error)(f"{error}, in {shown(self._program.line(found))}") from None
         except RecursionError:
-            raise OverBudget(f"nested too deep, in {shown(self._program.line(found))}") from None
+            raise OverBudget(f"nested too deeply, in {shown(self._program.line(found))}") from None
         except (ArithmeticError, TypeError, ValueError, LookupError, AttributeError) as error:
-            raise Stops(f"it would stop: {error}, in {shown(self._program.line(found))}") from None
+            raise Stops(f"the program would stop: {error}, in {shown(self._program.line(found))}") from None
 
     def _execute(self, found: ast.stmt, scope: dict[str, Any]) -> None:
         self._step()
@@ -139,7 +139,7 @@ class _Walker:
             if len(arguments) != len(names):
                 raise Stops(f"{found.name} takes {len(names)} arguments, and is given {len(arguments)}")
             if self._calls >= MAX_CALLS:
-                raise OverBudget(f"functions call one another more than {MAX_CALLS} deep")
+                raise OverBudget(f"calls of functions are nested more than {MAX_CALLS} deep")
             inside = dict(zip(names, arguments, strict=True))
             self._calls += 1
             try:

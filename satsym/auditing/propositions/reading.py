@@ -175,8 +175,8 @@ class _Check(ast.NodeVisitor):
             self.symbols[node.id] = None
             return
         known = [*self._bound, *words.values, *words.symbols]
-        hint = "is a measurement; give it its arguments in brackets" if node.id in words.functions else ""
-        raise BadInput(f"{shown(node.id)} {hint or f'means nothing here; {suggestion(node.id, known)}'}{_column(node)}")
+        hint = "is a measurement; give its arguments in brackets" if node.id in words.functions else ""
+        raise BadInput(f"{shown(node.id)} {hint or f'is unknown here; {suggestion(node.id, known)}'}{_column(node)}")
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         if node.attr.startswith("_"):

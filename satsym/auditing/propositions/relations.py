@@ -187,7 +187,7 @@ def _exact_sign(gap: Any) -> int:
     simple = factored(gap)
     if simple.is_positive or simple.is_negative:
         return 1 if simple.is_positive else -1
-    raise Undecided(f"the sign of {gap} depends on its letters")
+    raise Undecided(f"the sign of {gap} depends on the values of its symbols")
 
 
 def _is_zero(gap: Any) -> bool:

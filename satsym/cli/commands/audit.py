@@ -59,9 +59,9 @@ def audit(
     """Check the formulas and statements in a document.
 
     Equations, matrices, numbers, units, tables, algorithms and claims are checked against what satsym derives. LEDGER
-    is a document that comes with satsym, or a TOML file that lists the items of a document and says what each of them
-    is to be checked against. Every verdict is computed; a ledger cannot contain verdicts. The exit code does not
-    depend on the verdicts.
+    is the name of a document that comes with satsym, or a TOML file that lists the items of a document and says what
+    each of them is to be checked against. Every verdict is computed; a ledger cannot contain verdicts. The exit code
+    does not depend on the verdicts.
     """
     from satsym import auditing
     from satsym.auditing import cache

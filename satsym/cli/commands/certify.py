@@ -27,10 +27,10 @@ Exit codes: 0 the result is confirmed, 3 the folder cannot be used, 4 the folder
 def certify(folder: Path, as_json: bool) -> ExitCode:
     """Examine a saved result again.
 
-    FOLDER is a folder to which `satsym solve` wrote a result with --out or --plot. The certificate is computed
-    anew from the saved problem and trajectory, and the numbers in result.json are compared with them, except
-    iterations and seconds. The solution itself is read from the folder; only the competing solutions are computed
-    again. No file is written.
+    FOLDER is a folder to which `satsym solve` wrote a result with --out or --plot. The certificate is computed again
+    from the saved problem and trajectory, and the numbers in result.json are compared with the new ones, except the
+    number of iterations and the computing time. The solution itself is read from the folder; only the competing
+    solutions are computed again. No file is written.
     """
     from satsym.report.results import problem
     from satsym.report.results.certificate import certificate_object

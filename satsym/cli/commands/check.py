@@ -18,9 +18,9 @@ Examples:
   satsym check 'r_ddot = r*theta_dot^2 - mu/r^2 + u1' --model polar_orbit
   satsym check '\\dot\\lambda_1 = -\\frac{\\partial H}{\\partial x_1}' --model polar_orbit
   satsym check "x'' + x = u" --model van_der_pol --let x=x1 --let u=u
-  satsym check 'v_dot = a - k v^2' --model DIR/sled      after satsym derive sled.py --out DIR
+  satsym check 'v_dot = a - k v^2' --model DIR/sled      a model of your own, after satsym derive sled.py --out DIR
 
-In single quotes the shell leaves backslashes alone."""
+Put the formula in single quotes, so that the shell does not change its backslashes."""
 
 
 @command(epilog=EXAMPLES)

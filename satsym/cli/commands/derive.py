@@ -21,7 +21,7 @@ Examples:
   satsym derive                         all of derivations/ into generated/ (in a checkout)
   satsym derive --check                 check that generated/ agrees with derivations/
   satsym derive --fresh                 everything again, even what has not changed
-  satsym derive my_model.py --out DIR   your own; then write model = "DIR/NAME" in an instance
+  satsym derive my_model.py --out DIR   a file of your own; in an instance, write model = "DIR/NAME"
 
 A derivation file is Python and is executed: derive only files that you trust."""
 
@@ -85,7 +85,7 @@ def _checked_in(paths: Sequence[Path]) -> Path:
     """Return the checkout's generated/, if the results of all these files belong there."""
     home = checkout()
     if home is None:
-        raise click.UsageError("--out DIR is needed, because this satsym is not a checkout.")
+        raise click.UsageError("--out DIR is needed, because satsym does not run from a checkout.")
     for path in paths:
         if path.resolve().parent not in (home / "derivations", home / "derivations" / "examples"):
             raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
@@ -102,7 +102,7 @@ def _compare(differences: Sequence[str], folder: Path, command: str) -> ExitCode
         tell(say("<folder> agrees with the derivations", folder=folder))
         return ExitCode.DONE
     emit("".join(differences))
-    complain(f"{folder} is not what the derivations say; run: {command}")
+    complain(f"{folder} does not agree with the derivations; run: {command}")
     return ExitCode.STALE
 
 

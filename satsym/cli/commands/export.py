@@ -25,7 +25,7 @@ Examples:
   satsym export return-to-geo --format oem > geo.oem    a CCSDS Orbit Ephemeris Message, including manoeuvres
   satsym export return-to-geo --format czml --out geo.czml    for viewing in Cesium
   satsym export molniya --format stk --out molniya.e    an uncontrolled motion, for STK
-  satsym export return-to-geo --format csv --from results/return-to-geo/solve    of a saved result"""
+  satsym export return-to-geo --format csv --from results/return-to-geo/solve    a saved result, as CSV"""
 
 
 @command(epilog=EXAMPLES)

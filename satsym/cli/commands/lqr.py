@@ -35,8 +35,9 @@ Examples:
 def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Find the linear quadratic regulator u = -K x.
 
-    X is an instance with an [lqr] table, or a model, for which all weights are 1; shipped, or the path of one. The cost
-    is the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2, where x is the deviation from the reference.
+    X is an instance with a table [lqr], or a model, for which all weights are 1; it is a shipped one, or the path of a
+    file. The cost is the integral of x'Qx + 2x'Nu + u'Ru, without a factor 1/2, where x is the deviation from the
+    reference.
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find

@@ -70,7 +70,7 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
         raise BadInput(f"NAME: {name} is a Python keyword; choose another name, such as my_{name}")
     if not _NAME.match(name):
         raise BadInput(
-            f"NAME: got {shown(name)}; write lower-case letters, digits and single underscores, such as my_model"
+            f"NAME: got {shown(name)}; use lower-case letters, digits and single underscores, such as my_model"
         )
     if name in {*sys.stdlib_module_names, "numpy", "pytest", "satsym", "scipy", "sympy"}:
         raise BadInput(f"NAME: {name}.py would hide a module that Python imports; choose another name")
@@ -94,7 +94,7 @@ def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str,
     from satsym.wording import shown
 
     if not _FILE.match(name):
-        raise BadInput(f"NAME: got {shown(name)}; write letters, digits, - and _, such as my-case")
+        raise BadInput(f"NAME: got {shown(name)}; use letters, digits, - and _, such as my-case")
     if original not in files.shipped():
         files.locate(original)
         raise BadInput(

@@ -41,8 +41,8 @@ Examples:
 def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:
     """Draw a saved result again, without solving.
 
-    X is an instance or model whose results were saved with --out or --plot; X/COMMAND, for the results of that
-    command; or a folder with results, also those of a study. Incomplete results are rejected. For the
+    X is an instance or model whose results were saved with --out or --plot; or X/COMMAND, the results of one
+    command; or a folder that contains results, including those of a study. Incomplete results are rejected. For the
     commands analyse, lqr and compare, the numbers are computed again.
     """
     from satsym import instance

@@ -16,7 +16,7 @@ from satsym.status import ExitCode, Status
 EXAMPLES = """\b
 Examples:
   satsym prove return-to-orbit          a proof of the solution, with 20 digits
-  satsym prove my_case.toml --json      the same for another program
+  satsym prove my_case.toml --json      the same as JSON, for another program
   satsym prove soft-return --latex soft-return.tex
 
 Exit codes: 0 proved, 3 the instance cannot be used, 4 the problem has a feature that no theorem used here covers

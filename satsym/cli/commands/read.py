@@ -37,7 +37,7 @@ def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_
 
     FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address in the model; you confirm
     a row by deleting its line `draft = true`. If the document is read again, confirmed rows are kept. Formulas that
-    cannot be read are listed with their places.
+    cannot be read are listed with their positions.
     """
     from satsym.auditing.document import drafting
     from satsym.report.results.files import write_text

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 EXAMPLES = """\b
 Examples:
   satsym report soft-return --html soft-return.html
-  satsym report transfer-fuel --html transfer.html --interactive    with a slider over time
-  satsym report soft-return --html soft-return.html --prove         with a theorem beside the certificate
+  satsym report transfer-fuel --html transfer.html --interactive    with a slider for the time
+  satsym report soft-return --html soft-return.html --prove         with a proof in addition to the certificate
   satsym report my_case.toml --html my_case.html --derivation my_model.py"""
 
 
@@ -35,11 +35,11 @@ Examples:
 @place_option(
     "--derivation", "stated", metavar="FILE.py", help="Derivation file of X's model, if the model is your own."
 )
-@click.option("--interactive", is_flag=True, help="Add sliders, values under the pointer, and motion in space.")
+@click.option("--interactive", is_flag=True, help="Add sliders, the values at the pointer, and the motion in space.")
 @place_option(
     "--study", "study", metavar="DIR", help="With --interactive: a study of X; a slider chooses among its solutions."
 )
-@click.option("--prove", "proving", is_flag=True, help="Add the proof of the solution, as by `satsym prove`.")
+@click.option("--prove", "proving", is_flag=True, help="Add the proof that `satsym prove` gives of the solution.")
 @set_option
 def report(
     subject: str,
@@ -69,7 +69,7 @@ def report(
     if page is None:
         raise click.UsageError("Give --html FILE, the file to write the page to.")
     if study is not None and not interactive:
-        raise click.UsageError("--study DIR is shown with --interactive.")
+        raise click.UsageError("--study DIR requires --interactive.")
     if interactive:
         library("plotly.offline", "plotly", "interactive")  # now, before solving
     case = instance.load(subject)

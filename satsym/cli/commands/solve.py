@@ -30,7 +30,7 @@ Methods (auto chooses the one that suits the problem):
 \b
 Examples:
   satsym solve soft-return --plot       results and pictures into results/soft-return/solve
-  satsym solve my_case.toml --json      results for another program
+  satsym solve my_case.toml --json      the result as JSON, for another program
   satsym solve soft-return --continue c1=1:1e-2   continuation from an easier problem
 
 Exit codes: 0 converged, 3 invalid instance, 4 no solution (the status says why),

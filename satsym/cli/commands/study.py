@@ -65,10 +65,10 @@ def _listed(choices: type[Choice]) -> str:
 )
 @set_option
 @click.option("--feedback", metavar="LAW", help="Control law for simulate; see `satsym simulate`.")
-@click.option("--trajectories", is_flag=True, help="Keep the trajectories as well, in a few npz files.")
+@click.option("--trajectories", is_flag=True, help="Also save the trajectories, in a few npz files.")
 @click.option("--table", metavar="FORM", help=f"File format of the table: {_listed(TableFormat)}; by default csv.")
 @place_option("--out", metavar="DIR", help="Output folder; by default results/NAME/study.")
-@click.option("--resume", is_flag=True, help="Continue the study in the output folder, or start it.")
+@click.option("--resume", is_flag=True, help="Continue the study in the output folder; without one, start it.")
 @click.option(
     "--workers",
     type=click.IntRange(1, 1000),
@@ -126,7 +126,7 @@ def study(
                 watch=lambda advance: line.report(progress_line(advance), advance.done / max(1, advance.total)),
             )
         except KeyboardInterrupt as stop:
-            stop.add_note("--resume goes on with what is done")
+            stop.add_note("repeat the command with --resume to continue")
             raise
     drawn = draw(folder, look)[1] if look else []
     pictures = {"pictures": [str(path) for path in drawn]} if look else {}

@@ -40,9 +40,9 @@ Exit codes: 0 measured, 4 measured, but the instance has no solution."""
 def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
     """Measure how fast a model runs on this machine.
 
-    X is an instance or a model, shipped or the path of one. Many motions are integrated at once by the classical
-    Runge-Kutta method: with NumPy, and with numba (extra fast) on one core and on all cores. An instance with a cost
-    is also solved and certified.
+    X is a shipped instance or model, or the path of one. Many motions are integrated at once by the classical
+    Runge-Kutta method: with NumPy, and with numba (the extra `fast`) on one core and on all cores. An instance with a
+    cost is also solved and certified.
     """
     from satsym.analysis.speed import solved, speeds
     from satsym.analysis.subject import find
@@ -70,7 +70,7 @@ def _text(found: Mapping[str, Any]) -> str:
 
     machine, steps, solve = found["machine"], found["steps"], found["solve"]
     first = steps[0]["per_second"]
-    rows = [(say("what"), say("cores"), say("a second"), say("of the first"))]
+    rows = [(say("what"), say("cores"), say("per second"), say("relative to the first"))]
     for one in steps:
         name = say("steps of one motion, <backend>", backend=BACKENDS[one["backend"]])
         rows.append((name, str(one["cores"]), figure(one["per_second"], 3), f"{one['per_second'] / first:.3g}"))
@@ -88,7 +88,7 @@ def _text(found: Mapping[str, Any]) -> str:
     if solve is not None and solve["certificate_s"] is None:
         lines += ["", *wrapped(say("the instance has no solution: <said_status>", said_status=found["status"]))]
     if all(one["backend"] == "numpy" for one in steps):
-        lines += ["", *wrapped(say("numba is not installed: pip install 'satsym[fast]'"))]
+        lines += ["", *wrapped(say("numba is not installed; run pip install 'satsym[fast]'"))]
     return "\n".join(lines)
 
 

@@ -91,7 +91,7 @@ def _definitions(model: Kernels) -> Mapping[str, ast.FunctionDef]:
     except Unexpected as error:
         raise BeyondProof(f"a generated module whose line {error.line} {error.reason}") from None
     if spec != model.spec:
-        raise BeyondProof("a model whose constraints at the end were changed")
+        raise BeyondProof("a model whose terminal constraints were changed")
     found = {node.name: node for node in functions if not node.name.endswith("_batch")}
     if spec.multipliers:
         found[CONSTRAINTS] = _constraints(found["boundary"], len(spec.states), len(spec.multipliers))
@@ -106,7 +106,7 @@ def _constraints(boundary: ast.FunctionDef, first: int, count: int) -> ast.Funct
     """
     *body, last = boundary.body
     if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Tuple)):
-        raise BeyondProof("constraints at the end in a function of another form")
+        raise BeyondProof("terminal constraints in a function of an unsupported form")
     wanted = ast.Tuple(last.value.elts[first : first + count], ast.Load())
     needed = _names(wanted, ast.Load)
     kept: list[ast.stmt] = [ast.Return(wanted)]
@@ -114,11 +114,11 @@ def _constraints(boundary: ast.FunctionDef, first: int, count: int) -> ast.Funct
         if not _names(node, ast.Store) & needed:
             continue
         if not isinstance(node, ast.Assign):
-            raise BeyondProof("constraints at the end that are stated by cases")
+            raise BeyondProof("terminal constraints that are defined piecewise")
         kept.insert(0, node)
         needed |= _names(node.value, ast.Load)
     if needed & {"lam", "nu", "bounds", "final"}:
-        raise BeyondProof("constraints at the end of other than states, time and parameters")
+        raise BeyondProof("terminal constraints that depend on more than states, time and parameters")
     made = ast.parse(f"def {CONSTRAINTS}(t, x, p): pass").body[0]
     assert isinstance(made, ast.FunctionDef)
     made.body = kept
@@ -163,7 +163,7 @@ class _Exact(ast.NodeTransformer):
             case [ast.Gt() | ast.GtE()]:
                 pair = [b, a]
             case _:
-                raise BeyondProof("a comparison of another kind")
+                raise BeyondProof("a comparison of an unsupported kind")
         return ast.Call(ast.Name("_below", ast.Load()), [self._key(), *pair], [])
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
@@ -173,4 +173,4 @@ class _Exact(ast.NodeTransformer):
         return node
 
     def visit_For(self, node: ast.For) -> ast.AST:
-        raise BeyondProof("a law of the controls that is found by iteration")
+        raise BeyondProof("a control law that is evaluated by iteration")

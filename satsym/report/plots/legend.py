@@ -40,7 +40,7 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
 
     quantities, found = list(quantities), []
     if any(each.deviation for each in read(quantities)):
-        found.append((line(linestyle="none"), say(r"$\Delta$: minus reference")))
+        found.append((line(linestyle="none"), say(r"$\Delta$: deviation from the reference")))
     if any(q.target is not None for q in quantities):
         found.append((line(**style.TARGET), say("final condition")))
     if any(q.active is not None or q.forbidden for q in quantities):

@@ -211,7 +211,7 @@ def of_multipliers(found: Survey) -> Figure | None:
         (legend.line(**COMPUTED), say("computed multipliers")),
         (legend.line(**ONE), say("exact: 1, multiplicity 6, Jordan blocks 2 + 1 + 1 + 1 + 1")),
         (legend.line(**CIRCLE), say("unit circle")),
-        (legend.line(**SCATTER), say("scatter expected")),
+        (legend.line(**SCATTER), say("expected scatter")),
     ]
     legend.below(sheet, entries)
     return sheet

@@ -88,4 +88,4 @@ def _along_normal(path: Array, normal: Array) -> View:
         if near
         else (say("towards the initial point"), say("in the plane of the motion"))
     )
-    return View(np.vstack([first, np.cross(normal, first)]), (towards, say("at right angles")), name)
+    return View(np.vstack([first, np.cross(normal, first)]), (towards, say("perpendicular to it")), name)

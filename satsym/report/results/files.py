@@ -105,8 +105,8 @@ def write_text(path: Path, content: str) -> None:
 
 def unwritable(place: Path, error: Exception) -> BadInput:
     """Return the complaint about a place that the system refused to write to."""
-    reason = getattr(error, "strerror", None) or "the path leads nowhere"
-    return BadInput(f"{printable(str(place))}: cannot be written ({reason}); give another place")
+    reason = getattr(error, "strerror", None) or "the path cannot be resolved"
+    return BadInput(f"{printable(str(place))}: cannot be written ({reason}); choose another location")
 
 
 @contextmanager
@@ -188,28 +188,28 @@ def unpacked(content: bytes) -> dict[str, NDArray[Any]]:
             _check_members(members, len(content))
             return {member.filename.removesuffix(".npy"): _array(archive.read(member)) for member in members}
     except (zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError, struct.error) as error:
-        raise ValueError(f"no archive of arrays: {error}") from None
+        raise ValueError(f"not an archive of arrays: {error}") from None
 
 
 def _check_end(content: bytes) -> None:
     """Check that the table of contents is short, before it is read."""
     place = len(content) - _END.size
     if place < 0 or content[place : place + 4] != b"PK\x05\x06":
-        raise ValueError("no archive of arrays: it has no end")
+        raise ValueError("not an archive of arrays: its end is missing")
     _, _, _, _, members, size, _, _ = _END.unpack_from(content, place)
     if members > MOST_MEMBERS or size > LONGEST_DIRECTORY or content[max(place - 20, 0) :].startswith(_LARGER):
-        raise ValueError("no archive of arrays: its table of contents is too long")
+        raise ValueError("not an archive of arrays: its table of contents is too long")
 
 
 def _check_members(members: list[zipfile.ZipInfo], size: int) -> None:
     """Check that members are plain, and together not longer than the file."""
     names = [member.filename for member in members]
     if len(set(names)) != len(names) or not all(name.endswith(".npy") for name in names):
-        raise ValueError("the archive holds something else than arrays")
+        raise ValueError("the archive contains something other than arrays")
     if any(member.compress_type != zipfile.ZIP_STORED or member.flag_bits & 0x1 for member in members):
         raise ValueError("the archive is compressed or encrypted")
     if sum(member.file_size for member in members) > size:
-        raise ValueError("the archive promises more than it holds")
+        raise ValueError("the archive contains less than it declares")
 
 
 def _array(content: bytes) -> NDArray[Any]:
@@ -224,12 +224,12 @@ def _array(content: bytes) -> NDArray[Any]:
     except (SyntaxError, TypeError, KeyError, RecursionError, MemoryError, OverflowError) as error:
         raise ValueError(f"an array whose header cannot be read ({type(error).__name__})") from None
     if kind.hasobject or not (kind.kind == "U" or (kind.kind == "f" and kind.itemsize == 8)) or not kind.itemsize:
-        raise ValueError("an array of something else than numbers or texts")
+        raise ValueError("an array of something other than numbers or texts")
     left = len(content) - stream.tell()
     if len(shape) > MOST_AXES or any(type(length) is not int or not 0 <= length < LONGEST_AXIS for length in shape):
-        raise ValueError("an array of another shape than it has numbers")
+        raise ValueError("an array whose shape does not match the number of its entries")
     if math.prod(shape) * kind.itemsize != left:
-        raise ValueError("an array of another shape than it has numbers")
+        raise ValueError("an array whose shape does not match the number of its entries")
     found: NDArray[Any] = np.frombuffer(content, kind, offset=stream.tell())
     found = found.reshape(shape, order="F" if by_columns else "C")
     if kind.kind == "U":

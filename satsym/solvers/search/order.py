@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
@@ -20,7 +20,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import starts
+from satsym.solvers.search import ends
 from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
 from satsym.solvers.search.following import BESIDE, LOST, finer, followed, part
 from satsym.solvers.search.mesh import refined
@@ -38,6 +38,10 @@ then. After DOUBTFUL of them the search asks whether any motion reaches the end.
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
 cost that was found. Where ends are drawn, or path constraints separate the ways, it ends after PATIENCE in a row."""
+
+SOON = 50_000
+"""Unknowns times iterations that the list of competitors takes at least, because starts of small programmes cost
+little, and few of them may lead to the cheapest motion."""
 
 PROBE, AROUND = 160_000, 600_000
 """Unknowns times iterations after which the list ends if at least two starts were solved and all led to one cost, but
@@ -154,7 +158,7 @@ def _further(
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
-    patient, probe = constrained or starts.draws_ends(instance), AROUND if constrained else PROBE
+    patient, probe = constrained or ends.random(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.first, first=first), first):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
@@ -182,10 +186,21 @@ def _further(
         spent = limits.meter.spent
         # starts with other turns and durations are tried whatever the first ones lead to
         further = plan.turns is not None or plan.timed or plan.arriving
-        alone = len(seen) == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
-        enough = (PATIENCE if patient else QUIET + FURTHER * (len(seen) - 1)) if seen else FAILING
-        if alone or quiet >= enough or number + 1 >= STARTS or limits.expired:
+        known = _distinct(came for _, came in seen)
+        alone = known == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
+        enough = (PATIENCE if patient else QUIET + FURTHER * (known - 1)) if seen else FAILING
+        done = alone or (quiet >= enough and limits.meter.spent - begun > SOON)
+        if done or number + 1 >= STARTS or limits.expired:
             break
+
+
+def _distinct(costs: Iterable[float]) -> int:
+    """Return how many costs differ; each that is not known counts as one."""
+    different = list[float]()
+    for cost in costs:
+        if not any(same(cost, other) for other in different):
+            different.append(cost)
+    return len(different)
 
 
 def _shape(times: Array, x: Array) -> Array:

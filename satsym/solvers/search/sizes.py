@@ -110,10 +110,26 @@ def _rest(instance: Instance, controls: Controls, duration: float) -> Rest:
     v = np.zeros(controls.count)
     v[bounded] = 0.5 * (low + high)[bounded]
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
-    far = FAR_STATE * max(1.0, np.abs(start).max(), np.nanmax(np.abs(end), initial=0.0))
     times = instance.t0 + duration * np.linspace(0.0, 1.0, STEPS + 1)
-    states = followed(instance, controls, times, start, v, far)
+    states = followed(instance, controls, times, start, v, _far(start, end))
     return Rest(v, states, len(states) == STEPS + 1)
+
+
+def _far(start: Array, end: Array) -> float:
+    return float(FAR_STATE * max(1.0, np.abs(start).max(), np.nanmax(np.abs(end), initial=0.0)))
+
+
+def ranges(instance: Instance, controls: Controls, duration: float) -> Array:
+    """Return the largest ranges (n,) of states in the motions at rest from the start and backwards from the end.
+
+    Free final states of the motion from the end are those in which the motion from the start ends.
+    """
+    rest = _rest(instance, controls, duration)
+    start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
+    times = instance.t0 + duration * np.linspace(1.0, 0.0, STEPS + 1)
+    last = np.where(np.isnan(end), rest.states[-1], end)
+    back = followed(instance, controls, times, last, rest.controls, _far(start, end))
+    return np.asarray(np.maximum(np.ptp(rest.states, axis=0), np.ptp(back, axis=0)))
 
 
 def _of_states(instance: Instance, controls: Controls, duration: float, rest: Rest) -> Array:

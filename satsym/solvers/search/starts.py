@@ -14,7 +14,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.instance.unknowns import Place
+from satsym.solvers.search import ends
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import flow, followed, resting, wanted
@@ -29,9 +29,8 @@ WAVES = 3
 EQUAL_RATE = 1e-9
 """Relative difference of a rate and a state below which they count as the same quantity."""
 
-FREELY, DRAWS, BENT = 1.0, 40, (0.0, 0.3, 1.0, 0.3)
-"""Standard deviation of random final states, in scales of the states; number of starts with random final states;
-amplitudes of waves on their paths."""
+DRAWS, BENT = 40, (0.0, 0.3, 1.0, 0.3)
+"""Number of starts with random values of free initial and final states, and amplitudes of waves on their paths."""
 
 MORE, WIDER, LASTING = 24, (0.3, 1.0, 3.0), (2.0, 4.0, 1.0)
 """Number of further starts if the first ones lead to several costs or none, amplitudes of their waves, and their
@@ -126,7 +125,7 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         ]
     round_ = turning(instance, controls)
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
-    if draws_ends(instance):  # every other path is a bent line, because coasts of several revolutions diverge
+    if ends.random(instance):  # every other path is a bent line, because coasts of several revolutions diverge
         found[1:1] = [Plan(coasting=k % 2 > 0, drawn=k, noise=BENT[(k - 1) % 4], seed=k) for k in range(1, DRAWS + 1)]
     if round_:
         places = [place for pair in round_[:2] for place in pair]
@@ -152,13 +151,6 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
     if not given:
         found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
-
-
-def draws_ends(instance: Instance) -> bool:
-    """Return whether initial states are free or final states partly free or in ranges; random ones are tried then."""
-    end = wanted(instance, instance.t0)
-    begins = any(one.place is Place.INITIAL for one in instance.free)
-    return begins or bool(instance.ranges) or bool(np.isnan(end).any() and not np.isnan(end).all())
 
 
 def weak(instance: Instance, controls: Controls) -> list[Plan]:
@@ -250,7 +242,8 @@ def begun(programme: Programme, plan: Plan) -> Array:
         at = _ranged(controls)
         low, high = controls.lower[at], controls.upper[at]
         v[at] = 0.5 * (low + high) + 0.5 * plan.at_bound * (high - low)
-    start, end = _drawn_ends(programme, plan, start, end)
+    if plan.drawn:
+        start, end = ends.drawn(programme, plan.drawn, start, end)
     free = np.isnan(end)
     x = start[:, None] + np.where(free, 0.0, end - start)[:, None] * share
     if plan.coasting:
@@ -269,25 +262,6 @@ def begun(programme: Programme, plan: Plan) -> Array:
         _overlaid(programme, x, many, share)
     parameters = [one.of(instance) for one in programme.free]
     return programme.packed(x, many, durations, np.array(parameters), instance.t0)
-
-
-def _drawn_ends(programme: Programme, plan: Plan, start: Array, end: Array) -> tuple[Array, Array]:
-    """Return initial and final states with random values for the free ones, of the states' scales."""
-    if not plan.drawn:
-        return start, end
-    start, end, rng, sizes = start.copy(), end.copy(), np.random.default_rng(plan.drawn), programme.sizes.states
-    for one in programme.instance.free:
-        if one.place is Place.INITIAL:
-            value = sizes[one.index] * FREELY * rng.normal()
-            start[one.index] = abs(value) if one.positive else value
-    if np.isnan(end).any() and not np.isnan(end).all():
-        drawn = FREELY * sizes * rng.normal(size=len(end))
-        positive = np.array([state.positive for state in programme.instance.model.spec.states])
-        end = np.where(np.isnan(end), np.where(positive, np.abs(drawn), drawn), end)
-    for name, (low, high) in programme.instance.ranges.items():
-        if np.isfinite(low) and np.isfinite(high):
-            end[programme.instance.model.spec.state_names.index(name)] = rng.uniform(low, high)
-    return start, end
 
 
 def _overlaid(programme: Programme, x: Array, v: Array, share: Array) -> None:

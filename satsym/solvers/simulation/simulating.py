@@ -82,7 +82,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
         If the final time is free.
     """
     if instance.tf is None:
-        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; enter a number")
+        raise BadInput(f"{instance.called}: time.tf: a simulation requires a final time; give a number")
     limits, _ = watched(instance, None)
     try:
         return _simulated(instance, law, limits)

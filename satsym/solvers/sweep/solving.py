@@ -283,7 +283,10 @@ class _Relaxation:
         if state.broken or _distance(state.sweep) > GROWTH * state.closest:
             return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} diverges; {self._advice()}"
         if state.since >= PATIENCE:
-            return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} goes round in circles; {self._advice()}"
+            return (
+                Status.NOT_CONVERGED,
+                f"relaxation {self.fraction:g} makes the sweeps repeat themselves; {self._advice()}",
+            )
         return None
 
     def _advice(self) -> str:

@@ -49,7 +49,7 @@ without it exists. Such an arc can come from a double zero of a switching functi
 class Origin(Enum):
     """Sources of exact arcs, with the texts for messages."""
 
-    STRUCTURE = "a given structure"
+    STRUCTURE = "the given structure"
     REST = "rest"
     REACH = "the reachable set"
     SMOOTHED = "the regularised problem with the weight {:.1e}"

@@ -154,7 +154,11 @@ def _by_least_time(
         return replace(near, origin=Origin.MINIMUM_TIME)
     if stopped.status is Status.INFEASIBLE:
         return stopped
-    alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= SHORTFALL else ""
+    alone = (
+        ", and in that time only one control reaches it, whatever its cost"
+        if abs(given / least - 1.0) <= SHORTFALL
+        else ""
+    )
     message = f"{stopped.message}; the minimum time to the given final state is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
 

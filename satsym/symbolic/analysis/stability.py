@@ -57,8 +57,8 @@ def stability(of: Spectrum) -> Stability:
     if any(f.right is None for f in of.factors):
         conditions = tuple(c for c in routh(of.coefficients).column[1:])
         reason = (
-            "the parameters decide: all eigenvalues have negative real parts exactly where each of these is positive: "
-            + ", ".join(map(str, conditions))
+            "stability depends on the parameters: all eigenvalues have negative real parts if and only if each of "
+            "these is positive: " + ", ".join(map(str, conditions))
         )
         return Stability("depends on the parameters", Cause.PARAMETERS, (), block, conditions, reason)
     if block > 1:

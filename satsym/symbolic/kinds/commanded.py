@@ -57,7 +57,7 @@ class Statement(Derived):
         if len(self.of.controls) != 1:
             yield f"{self.of.name} must have one control"
         if self.controls:
-            yield "the law takes the place of the control, so there are none"
+            yield "the law replaces the control, so no controls may be declared"
         if self.follows not in states:
             yield "what follows the command must be a state"
         if not {self.command, self.damping} <= set(self.parameters):

@@ -38,7 +38,7 @@ class FirstOrder(Model):
         return (given_rates,)
 
     def misfits(self) -> Iterator[str]:
-        """Yield complaints about states without a rate, and rates of other symbols."""
+        """Yield a message for each state without a rate, and for each rate of a symbol that is not a state."""
         if set(symbols_of(self.states)) != set(self.rates):
             odd = unlike(symbols_of(self.states), self.rates, "without a rate", "no state")
             yield f"give one rate for each state; {odd or 'take the symbols from symbols_of'}"
@@ -49,7 +49,7 @@ class FirstOrder(Model):
             yield f"the rate of {state}", [rate], _declared(self)
 
     def motion_stated(self) -> list[sp.Expr]:
-        """Return the rates, which alone state the motion."""
+        """Return the rates, which define the motion completely."""
         return list(self.rates.values())
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:

@@ -55,7 +55,7 @@ class Newton(Particle):
         return (unit_vectors, position, velocity, acceleration, forces, newton, equations_of_motion, first_order)
 
     def misfits(self) -> Iterator[str]:
-        """Yield complaints about states that are not coordinates, and vectors of different sizes."""
+        """Yield a message for each state that is not a coordinate, and for vectors of different sizes."""
         states, moving = symbols_of(self.states), [*self.coordinates, *self.coordinates.values()]
         if len(moving) != len(states) or set(moving) != set(states):
             odd = unlike(symbols_of(self.states), moving, "neither coordinate nor rate", "no state")
