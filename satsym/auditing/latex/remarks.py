@@ -29,6 +29,7 @@ _OVER = ("overset", "stackrel", "underset")
 _ITALIC = frozenset(("for", "where", "with", "when", "and", "if", "s.t.", "s.t"))
 """Words that are recognised between formulas although they are set as letters."""
 _LONGEST_WORD = max(map(len, _ITALIC))
+"""Number of characters of the longest word that is recognised although it is set as letters."""
 _NARROW = (";", ":", ">", "~", "medspace", "thickspace")
 """Spaces that are too narrow to separate formulas."""
 REMARK = "remark"
