@@ -68,6 +68,16 @@ def test_displays_have_number_label_section_and_place(paper: Path) -> None:
     assert set(source.macros) == {"thd", "half"}
 
 
+def test_displays_that_macros_begin_and_end_are_found_at_their_lines(tmp_path: Path) -> None:
+    path = tmp_path / "short.tex"
+    begins = r"\newcommand{\be}{\begin{equation}}" + "\n" + r"\def\ee{\end{equation}}" + "\n"
+    path.write_text(begins + "\\be\nx = a \\ee\n\\input{part}\n\\be = b + \\beta \\ee\n")
+    (tmp_path / "part.tex").write_text("\n\\be y = b \\ee\n")
+    found = list(displays.displays(displays.read(path)))
+    assert [display.text.strip() for display in found] == ["x = a", "y = b", r"b + \beta"]
+    assert [display.place.rpartition("/")[2] for display in found] == ["short.tex:4", "part.tex:2", "short.tex:6"]
+
+
 def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["read", "paper.tex", "--model", "polar_orbit"]) == 0
     out = capsys.readouterr().out

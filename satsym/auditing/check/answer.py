@@ -18,10 +18,23 @@ from satsym.auditing.latex.cursor import CONSTANT, Reading
 from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.letters import Letter
 from satsym.auditing.latex.tokens import plain_tokens, tokens
-from satsym.auditing.latex.words import RELATIONS
+from satsym.auditing.latex.words import EITHER_PRODUCT, RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference
-from satsym.formula.tree import ZERO, Call, Equality, Grid, Node, Sym, cells, names_in, substituted, symbols, walk
+from satsym.formula.tree import (
+    ZERO,
+    Call,
+    Equality,
+    Grid,
+    Node,
+    Sym,
+    calls_in,
+    cells,
+    names_in,
+    substituted,
+    symbols,
+    walk,
+)
 from satsym.records import shelf
 from satsym.status import BadInput
 
@@ -291,6 +304,8 @@ class Subject:
         Return ``None`` if it does not hold.
         """
         residual = next(self.residuals(named, derivatives, guess))
+        if any(call.function == "times" for call in calls_in(residual)):
+            raise BadInput(EITHER_PRODUCT)
         if not is_plain(residual):
             raise BadInput(
                 "vectors, sums and integrals are not compared; check the components, or the expressions in them"

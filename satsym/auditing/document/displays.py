@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from satsym.auditing.latex.tokens import UNKNOWN, Macro, Unread, tokens
-from satsym.auditing.latex.words import ACCENTS, KEPT_GROUPS, MARKS, STYLES
+from satsym.auditing.document.macros import Definitions, enter_macros, with_environments
 from satsym.status import BadInput
 from satsym.wording import printable
 
@@ -39,20 +38,7 @@ _OPENING = re.compile(
 _SECTION = re.compile(
     r"\\(chapter|section|subsection)(\*?)\s*\{([^{}\n]{0,200})|^(#{1,3}) +([^\n]{1,200})$", re.MULTILINE
 )
-_MACRO = re.compile(
-    r"\\(?:(?:re)?newcommand|providecommand|DeclareRobustCommand)\s*\*?\s*\{?\s*\\(?P<name>[A-Za-z@]+)\s*\}?"
-    r"\s*(?:\[(?P<count>[0-9])\])?\s*(?:\[(?P<default>[^\[\]\n]*)\])?"
-    r"|\\[gex]?def\s*\\(?P<def>[A-Za-z@]+)(?P<args>[^{}\\\n]*)(?=\{)"
-    r"|\\DeclareMathOperator\s*\*?\s*\{?\s*\\(?P<operator>[A-Za-z@]+)\s*\}?"
-    r"|\\let\s*\\(?P<let>[A-Za-z@]+)\s*=?\s*(?P<same>\\[A-Za-z@]+|[A-Za-z])"
-    r"|\\DeclarePairedDelimiter\s*\{?\s*\\(?P<pair>[A-Za-z@]+)\s*\}?\s*\{(?P<left>[^{}]*)\}\s*\{(?P<right>[^{}]*)\}"
-    r"|\\(?:New|Renew|Provide|Declare)DocumentCommand\s*\{?\s*\\(?P<document>[A-Za-z@]+)\s*\}?"
-    r"\s*\{(?P<kinds>(?:[^{}]|\{[^{}]*\})*)\}"
-)
 _PACKAGES = re.compile(r"\\usepackage\s*(?:\[[^\]\n]{0,200}\])?\s*\{([^{}\n]{1,300})\}")
-_KNOWN = frozenset((*ACCENTS, *MARKS, *STYLES, *KEPT_GROUPS))
-"""Macros of LaTeX that satsym reads itself; a redefinition in the document changes only the look, and is ignored."""
-_SET = re.compile(r"\\(?:text|textrm|mathrm)\s*\{([^{}]*)\}")
 _LABEL, _TAG = re.compile(r"\\label\s*\{([^{}\n]{1,100})\}"), re.compile(r"\\tag\*?\s*\{([^{}\n]{1,40})\}")
 _REFERENCE = re.compile(r"(?:\\(?:eq|c|C|auto)?ref\s*\{|\{eq\}`)([^{}`\n]{1,100})[}`]")
 _OPTION = re.compile(r":(?:label|name):[ \t]*(\S{1,100})")
@@ -62,6 +48,8 @@ _OPEN_END = re.compile(
     r"(?:[-+=]|\\(?:quad|times|cdot)|\\sum(?:[_^](?:\{[^{}]*\}|\\?\w+))*)(?:[\s&]|\\nonumber|\\notag|\\qquad)*\Z"
 )
 """Pattern of the end of a line after which an equation continues on the next line."""
+_FOLLOWS = re.compile(r"[\s&]*=(?=\s*[^\s=])")
+"""Pattern of the sign at the beginning of a display that continues the one before it."""
 _RELATION = re.compile(r"[=<>]|\\(?:[lg]eq?|neq?|approx|in|to|equiv|sim|propto)\b")
 _GROUP = re.compile(r"\{[^{}]*\}")
 _INDENT = 80
@@ -89,14 +77,11 @@ class Display:
 
 
 @dataclass
-class Source:
+class Source(Definitions):
     """A document with all files that it includes, as one text."""
 
-    path: Path
+    path: Path = Path()
     text: str = ""
-    macros: dict[str, Macro] = field(default_factory=dict)
-    unread: list[tuple[str, str]] = field(default_factory=list)
-    """The parts that could not be read: place and reason of each."""
     _starts: list[tuple[int, Path, int]] = field(default_factory=list)
     """Start of each piece of a file in the text: position in the text, file, and line in the file."""
 
@@ -114,15 +99,17 @@ def read(path: Path) -> Source:
     BadInput
         If the document is not text, is too large, or is a PDF file.
     """
-    source = Source(path)
+    source = Source(path=path)
     home = path.parent.resolve()
     _include(source, path, home, ())
     _blank_out(source)
     for package in sorted({name.strip() for names in _PACKAGES.findall(source.text) for name in names.split(",")}):
         file = home / f"{package}.sty"
         if file.resolve().is_relative_to(home) and file.is_file():
-            _enter_macros(source, _COMMENT.sub("", _content(file)), None)
-    source.text = _enter_macros(source, source.text, source.place)
+            enter_macros(source, _COMMENT.sub("", _content(file)), None)
+    source.text = enter_macros(source, source.text, source.place)
+    source.text, moved = with_environments(source, source.text)
+    source._starts = [(moved(start), path, line) for start, path, line in source._starts]
     return source
 
 
@@ -165,6 +152,8 @@ def displays(source: Source) -> Iterator[Display]:
             while item in seen:
                 item += "'"
             seen.add(item)
+            if follows := _FOLLOWS.match(row):
+                row_start, row = row_start + follows.end(), row[follows.end() :]
             section = f"section {number} {title}".replace("  ", " ").strip() if title or number else ""
             yield Display(
                 row,
@@ -269,63 +258,6 @@ def _blank_out(source: Source) -> None:
 
 def _blank(match: re.Match[str]) -> str:
     return match[0] if match.groupdict().get("kept") else re.sub(r"[^\n]", " ", match[0])
-
-
-def _enter_macros(source: Source, text: str, place: Callable[[int], str] | None) -> str:
-    """Record the macros that a text defines, and return the text without the definitions.
-
-    A macro whose definition cannot be read is refused only where it is used.
-    """
-    for match in _MACRO.finditer(text):
-        name = next(match[kind] for kind in ("name", "def", "operator", "let", "pair", "document") if match[kind])
-        end = match.end()
-        if not match["let"] and not match["pair"]:
-            opening = text.find("{", match.end())
-            if opening < 0 or text[match.end() : opening].strip():
-                source.macros.setdefault(name, UNKNOWN)
-                continue
-            end = _closing(text, opening) + 1
-        if name not in _KNOWN:
-            try:
-                source.macros[name] = _macro(match, text[match.end() : end].strip(), match.end())
-            except Unread as error:
-                source.macros[name] = UNKNOWN
-                if place:  # a package of the document's own may hold anything
-                    source.unread.append((place(match.start()), f"the macro \\{name}: {error.message}"))
-        text = text[: match.start()] + re.sub(r"[^\n]", " ", text[match.start() : end]) + text[end:]
-    return text
-
-
-def _macro(match: re.Match[str], group: str, at: int) -> Macro:
-    """Return the macro that a definition defines."""
-    body, count, default = group[1:-1], int(match["count"] or 0), match["default"]
-    if match["let"]:
-        body = match["same"]
-    elif match["pair"]:
-        body, count, default = f"{match['left']} #2 {match['right']}", 2, ""
-    elif match["operator"]:
-        body = rf"\operatorname{{{_SET.sub(lambda upright: upright[1], body)}}}"
-    elif match["document"]:
-        kinds = re.fullmatch(r"\s*(?:O\s*\{([^{}]*)\})?([\sm]*)", match["kinds"])
-        if kinds is None:
-            return UNKNOWN
-        count, default = kinds[2].count("m") + (kinds[1] is not None), kinds[1]
-    elif match["def"]:
-        count = len(match["args"].split("#")) - 1
-        if match["args"].strip() != "".join(f"#{k + 1}" for k in range(count)):
-            return UNKNOWN
-    given = None if default is None else tuple(tokens(default, None, at))
-    return Macro(count, tuple(tokens(body, None, at)), given, starred=bool(match["pair"]))
-
-
-def _closing(text: str, opening: int) -> int:
-    """Return the position of the brace that closes the given one, or of the end of the text if none does."""
-    depth = 0
-    for match in re.finditer(r"\\.|[{}]", text[opening : opening + 20_000], re.DOTALL):
-        depth += {"{": 1, "}": -1}.get(match[0], 0)
-        if depth == 0:
-            return opening + match.start()
-    return min(len(text) - 1, opening + 20_000)
 
 
 def _sections(text: str) -> Iterator[tuple[int, str, str]]:

@@ -9,12 +9,14 @@ from typing import Self
 
 from satsym.auditing.latex.letters import Letter
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import ACCENTS, MARKS, REFUSED, RELATIONS, STYLES, UPRIGHT
-from satsym.formula.tree import Equality, Node
+from satsym.auditing.latex.words import ACCENTS, CLOSING, MARKS, OPENING, REFUSED, RELATIONS, STYLES, UPRIGHT
+from satsym.formula.tree import Call, Equality, Node
 from satsym.wording import printable
 
 CONSTANT = "constant"
 """Name of a constant of unspecified value: a quantity equated with it does not change in time."""
+
+MIXED_BRACKETS = "brackets of different kinds, as around a half-open interval, are not supported"
 
 
 @dataclass
@@ -27,7 +29,11 @@ class Reading:
     places: dict[str, set[str]] = field(default_factory=dict)
     """Name -> the arguments with which the letter is printed, apart from time."""
     known: dict[str, set[str]] = field(default_factory=dict)
-    """Value of `places` after a first reading of the formula."""
+    """Value of `places` after a first reading of the formula, in which not every letter is understood yet."""
+    lenient: bool = False
+    """Whether a bracket that could hold an argument passes for a factor, until it is known which letters have any."""
+    transposing: bool = False
+    """Whether primes denote transposition in the formula."""
     differential: int = -1
     """Position of a differential that belongs to no derivative or integral; -1 if there is none."""
     constants: bool = False
@@ -88,6 +94,10 @@ class Cursor(ABC):
     @abstractmethod
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
         """Read the subscript of a vertical bar, the point at which an expression is evaluated."""
+
+    @abstractmethod
+    def _condition(self, part: Sequence[Token], at: int) -> Node:
+        """Read a place, relation or list of relations, with what it is given, as in brackets or below an operator."""
 
     @abstractmethod
     def _begins_factor(self, token: Token) -> bool:
@@ -166,8 +176,8 @@ class Cursor(ABC):
             return list(self._found[self._i + 1 : self._i + 2])
         return list(self._found[self._i + 2 : group_end(self._found, self._i + 1) - 1])
 
-    def _bracket_end(self) -> int:
-        """Move past the bracket that closes the next opening bracket, and return its position."""
+    def _bracket_end(self, interval: bool = False) -> int:
+        """Move past the bracket that closes the next one, of an interval of any kind, and return its position."""
         opening, depth = self._take(), 1
         groups = 0
         while depth:
@@ -178,9 +188,33 @@ class Cursor(ABC):
             if groups == 0 and token.kind == "sign":
                 depth += (token.text in "([") - (token.text in ")]")
             self._i += 1
-        if self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
-            raise Unread(
-                "brackets of different kinds, as around a half-open interval, are not supported",
-                opening.at,
-            )
+        if not interval and self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
+            raise Unread(MIXED_BRACKETS, opening.at)
         return self._i - 1
+
+
+def listed(node: Node) -> tuple[Node, ...]:
+    """Return the members of a list; of anything else, itself alone."""
+    return node.arguments if isinstance(node, Call) and node.function == "list" else (node,)
+
+
+def bar_in(part: Sequence[Token], colon: bool = False) -> int:
+    """Return the place of the bar, or with `colon` also the colon, after which conditions follow; -1 if none is there.
+
+    Bars around an expression come in pairs, so that one of an odd number of them stands alone.
+    """
+    depth, bars = 0, []
+    for k, token in enumerate(part):
+        depth += (token.kind in ("open", "begin") or token.text in "([") - (
+            token.kind in ("close", "end") or token.text in ")]"
+        )
+        depth += token.kind == "macro" and (token.text in OPENING) - (token.text in CLOSING)
+        if depth == 0 and (token.text == "mid" or (colon and token.text == ":")):
+            return k
+        if depth == 0 and token.text in ("|", "vert") and not (token.kind == "macro" and token.text == "|"):
+            bars.append(k)
+    if len(bars) % 2 == 0:
+        return -1
+    if len(bars) == 1 and part[bars[0] + 1 : bars[0] + 2] and part[bars[0] + 1].text == "_":
+        return -1  # the point at which something is evaluated
+    return next((k for k in bars if 0 < k < len(part) - 1), -1)

@@ -8,13 +8,17 @@ from dataclasses import replace
 from itertools import pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import CONSTANT
-from satsym.auditing.latex.letters import GREEK, cleaned
+from satsym.auditing.latex.cursor import CONSTANT, bar_in, listed
+from satsym.auditing.latex.letters import GREEK, Letter, cleaned
 from satsym.auditing.latex.refusals import RefusalCursor
+from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FUNCTIONS
 from satsym.formula.tree import Add, Call, Grid, Node, Pow, Sym, Text, constant, symbols
+
+_OF_SETS = frozenset(("given", "both", "equal", *words.RELATIONS.values()))
+"""Functions of which braces around them make a set."""
 
 
 class EnclosedCursor(RefusalCursor):
@@ -22,14 +26,25 @@ class EnclosedCursor(RefusalCursor):
 
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
         """Return an expression evaluated at the point that is written below a bar."""
-        places: list[Node] = []
-        for part in split(script, lambda t: t.text in ",;"):
-            line = relation_in(part)
+        places = self._condition(script, at)
+        return Call("value", (base, *listed(places)))
+
+    def _condition(self, part: Sequence[Token], at: int) -> Node:
+        bar = bar_in(part)
+        if bar >= 0:
+            return Call("given", (self._condition(part[:bar], at), *listed(self._condition(part[bar + 1 :], at))))
+        found: list[Node] = []
+        for piece in split(part, lambda t: t.kind == "sign" and t.text in ",;"):
+            line = relation_in(piece)
             sides = [self._inner(side, at) for side in line.sides]
-            if line.signs not in ([], ["="]):
-                raise Unread("this evaluation point is not supported", at)
-            places.append(sides[0] if line.bare else Call("equal", tuple(sides)))
-        return Call("value", (base, *places))
+            steps: list[Node] = [
+                Call("equal" if sign == "=" else sign, pair)
+                for sign, pair in zip(line.signs, pairwise(sides), strict=True)
+            ]
+            found.append(sides[0] if line.bare else steps[0] if len(steps) == 1 else Call("both", tuple(steps)))
+            if line.signs == ["element"] and all(isinstance(one, Sym) for one in found[:-1]) and found[:-1]:
+                found = [Call("element", (Call("list", (*found[:-1], sides[0])), sides[1]))]  # x, u in a set
+        return found[0] if len(found) == 1 else Call("list", tuple(found))
 
     def _is_transform(self, base: Node) -> bool:
         r"""Return whether braces or square brackets follow a letter typeset as an operator, ``\mathcal{L}^{-1}``."""
@@ -37,6 +52,12 @@ class EnclosedCursor(RefusalCursor):
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
         operator = letter is not None and letter.style == "cal" and letter.base in words.TRANSFORMS
         token = self._peek()
+        if letter == Letter("E") and token is not None and token.kind in ("sign", "macro") and token.text in "[{":
+            begin = self._i
+            inside = [] if token.kind == "macro" else self._found[begin + 1 : self._bracket_end()]
+            self._i = begin
+            summed = len(split(inside, lambda t: t.kind == "sign" and t.text in "+-")) > 1
+            operator = token.kind == "macro" or bar_in(inside) >= 0 or not summed
         return (
             operator
             and token is not None
@@ -49,8 +70,8 @@ class EnclosedCursor(RefusalCursor):
         begin = self._i
         if opening.text == "[":
             self._i -= 1
-            return Call("transform", (base, self._inner(self._found[begin : self._bracket_end()], opening.at)))
-        return Call("transform", (base, self._inner(self._braced(), opening.at)))
+            return Call("transform", (base, self._condition(self._found[begin : self._bracket_end()], opening.at)))
+        return Call("transform", (base, self._condition(self._braced(), opening.at)))
 
     def _braced(self) -> Sequence[Token]:
         """Return the tokens within braces or angle brackets, after the opening one was read."""
@@ -80,18 +101,41 @@ class EnclosedCursor(RefusalCursor):
         """
         begin, behind = self._i, self._i + 1 + length + 2 * self._is("{", 1, "open")
         known = word in words.UNKNOWN or (macro == "operatorname" and word not in words.OPTIMA)
-        if not known or word in FUNCTIONS or not word.isalpha() or behind >= len(self._found):
+        spelled = len(word) > 2 and not word.isupper() and word not in words.UNITS | words.SAID | words.OPTIMA.keys()
+        if not (known or spelled) or word in FUNCTIONS or not word.isalpha() or behind >= len(self._found):
             return None
         self._i = behind
-        if self._is("{", kind="open"):
-            self._i += 1 if self._is("(", 1) else 0
-        if not self._is("("):
-            self._i = begin
-            return None
-        arguments = self._arguments()
-        if self._is("}", kind="close"):
+        grouped = self._is("{", kind="open") and self._is("(", 1)
+        self._i += grouped
+        if known and self._is("^"):
             self._i += 1
-        return Call(word, tuple(arguments))
+            power = self._inner(self._script(), self._found[begin].at)
+            if self._is("("):
+                return Pow(Call(word, self._places()), power)
+            self._i = behind
+        token = self._peek()
+        timed = not known and self._is("t", 1, "letter") and self._is(")", 2)
+        if token is not None and not timed and (self._is("(") or (known and self._is("["))):
+            arguments = self._places()
+            self._i += grouped
+            return Call(word, arguments)
+        letter = self._letter() if known else None
+        after = self._peek()
+        if letter is not None and (after is None or not self._begins_factor(after)):
+            return Call(word, (self._symbol(letter, self._found[begin].at),))
+        self._i = behind
+        if known and token is not None and (token.kind == "begin" or self._is("{", kind="macro")):
+            return Call(word, (self._factor(),))
+        self._i = begin
+        return None
+
+    def _places(self) -> tuple[Node, ...]:
+        """Read the arguments in the next bracket, which may be relations, and given conditions."""
+        begin = self._i
+        inside = self._found[begin + 1 : self._bracket_end()]
+        if not inside:
+            raise Unread("the brackets are empty", self._found[begin].at)
+        return listed(self._condition(inside, self._found[begin].at))
 
     def _upright(self, token: Token) -> Node | None:
         """Read a function or word that is printed upright; ``None``, with nothing read, for a letter."""
@@ -122,7 +166,7 @@ class EnclosedCursor(RefusalCursor):
     def _called(self, name: str) -> Node | None:
         """Read a function of unknown meaning with its argument, in brackets or a single letter."""
         if self._is("("):
-            return Call(name, tuple(self._arguments()))
+            return Call(name, self._places())
         letter = self._letter()
         return Call(name, (self._symbol(letter, self._found[self._i - 1].at),)) if letter else None
 
@@ -149,35 +193,31 @@ class EnclosedCursor(RefusalCursor):
 
     def _braces(self, token: Token) -> Node:
         """Read the contents of braces, or of angle brackets, which denote a mean or an inner product."""
-        parts = split(self._braced(), lambda t: t.kind == "sign" and t.text in ",;")
+        inside = self._braced()
+        if (bar := bar_in(inside, colon=True)) >= 0:
+            bar_sign = replace(inside[bar], kind="macro", text="mid")
+            inside = [*inside[:bar], bar_sign, *inside[bar + 1 :]]
+        found = self._condition(inside, token.at)
+        several = listed(found) != (found,) or (isinstance(found, Call) and found.function in _OF_SETS)
         if token.text == "langle":
-            return Call("angled", tuple(self._inner(part, token.at) for part in parts))
-        if len(parts) > 1:
-            return Call("braces", tuple(self._inner(part, token.at) for part in parts))
-        return self._inner(parts[0], token.at)
+            return Call("angled", listed(found))
+        return Call("braces", listed(found)) if several else found
 
     def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
         """Read values, each with the condition under which it applies."""
         found: list[Node] = []
         for row in rows:
             cells = split(row, lambda t: t.kind == "sign" and t.text in "&,")
-            value, *rest = [cell for cell in cells if cell]
-            said = [token for cell in rest for token in cell]
-            line = relation_in(said)
-            if "otherwise" in "".join(t.text for t in said):
+            value, *rest = [cell for cell in cells if any(t.text != REMARK for t in cell)]
+            said = [token for cell in rest for token in (*cell, Token("sign", ",", cell[-1].at))][:-1]
+            spoken = "".join(t.text for t in said if t.text != REMARK)
+            if "otherwise" in spoken or spoken.strip("{}.") in words.OTHERWISE:
                 found += [self._inner(value, at), Sym("otherwise")]
                 continue
-            sides = [self._inner(side, at) for side in line.sides]
-            if not rest or line.bare:
+            conditions = listed(self._condition(said, at)) if said else ()
+            if not conditions or not all(isinstance(c, Call) and c.function in _OF_SETS for c in conditions):
                 raise Unread("the condition of this case is not supported", said[0].at if said else at)
-            conditions: list[Node] = [
-                Call("equal" if sign == "=" else sign, (one, other))
-                for sign, (one, other) in zip(line.signs, pairwise(sides), strict=True)
-            ]
-            found += [
-                self._inner(value, at),
-                conditions[0] if len(conditions) == 1 else Call("both", tuple(conditions)),
-            ]
+            found += [self._inner(value, at), conditions[0] if len(conditions) == 1 else Call("list", conditions)]
         return Call("cases", tuple(found))
 
     def _size(self, token: Token) -> Node:
@@ -213,6 +253,8 @@ class EnclosedCursor(RefusalCursor):
         if not single and self._is("_"):
             self._i += 1
             script = self._script()
+            if len(script) > 1 and all(t.kind == "letter" for t in script):
+                return Call("indexed_norm", (inner, Sym("".join(t.text for t in script))))
             if [t.text for t in script] != ["2"]:
                 return Call("indexed_norm", (inner, self._inner(script, token.at)))
         return Call("abs" if single and not self._is_vector(inner) else "norm", (inner,))

@@ -6,26 +6,23 @@ of time (``x(t)``), and derivatives as dots, quotients or partial quotients.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from itertools import pairwise
-from math import factorial
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import CONSTANT, Reading
-from satsym.auditing.latex.letters import GREEK, Letter
+from satsym.auditing.latex.cursor import Reading, bar_in
 from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
-from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.packages import put_in
+from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
-from satsym.auditing.latex.rows import lines, split
-from satsym.auditing.latex.sums import SumCursor
+from satsym.auditing.latex.rows import lines
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
-from satsym.formula.reading import MAX_DEPTH
-from satsym.formula.tree import Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, children, constant
-from satsym.wording import printable
+from satsym.formula.tree import Call, Equality, Grid, Mul, Node, Sym, children
+
+_READINGS = 3
+"""Number of times that a formula is read at most until it is clear which of its letters have arguments."""
 
 
 def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[str] = ()) -> Reading:
@@ -46,9 +43,15 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
         At the first part that does not belong to the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
-    reading = _read(kept, Reading([]), start)
-    if reading.places:  # what is taken at several places is so wherever a bracket stands behind it
-        reading = _read(kept, Reading([], known=reading.places), start)
+    first = Reading([], lenient=True)
+    with suppress(Unread):
+        _read(kept, first, start)
+    known = first.places
+    for _ in range(_READINGS):  # what has an argument once, has one everywhere
+        reading = _read(kept, Reading([], known=known, transposing=first.transposing), start)
+        if reading.places == known:
+            break
+        known = reading.places
     reading.products = capitals(kept)
     refuse_powers_of_numbered(reading, start)
     if not reading.statements:
@@ -59,6 +62,11 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
 def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
     for line in lines(kept):
         refuse_spelled_name(line.sides)
+        colon = bar_in(line.sides[0], colon=True) if line.signs == ["tends"] else -1
+        if colon > 0 and line.sides[0][colon].text == ":":  # a function between two sets
+            parts = [line.sides[0][:colon], line.sides[0][colon + 1 :], line.sides[1]]
+            reading.statements.append(Call("maps", tuple(Parser(part, reading, start).side() for part in parts)))
+            continue
         reading.differential = -1
         sides = [Parser(part, reading, start).side() for part in line.sides]
         if reading.differential >= 0 and line.bare:
@@ -66,11 +74,13 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         reading.statements += sides if line.bare else []
         for sign, side, (one, other) in zip(line.signs, line.sides[1:], pairwise(sides), strict=True):
             if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
-                raise Unread(
-                    "brackets with a comma are not supported here, as they could be commutators", line.sides[0][0].at
-                )
+                one = Call("bracket", one.entries)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
+                function = one.factors[0] if isinstance(one, Mul) and len(one.factors) == 2 else None
+                if reading.lenient and isinstance(function, Sym):  # whose values are sets
+                    reading.places.setdefault(function.name, set()).add("")
+                    continue
                 raise Unread(
                     "braces could enclose a set here; write round brackets around a product", line.sides[0][0].at
                 )
@@ -92,309 +102,3 @@ def _stands_in(name: Node, tree: Node) -> bool:
     if isinstance(tree, Call) and tree.function in ("diff", "d", "value", *words.NOT_COMPARED):
         return False
     return tree == name or any(_stands_in(name, part) for part in children(tree))
-
-
-class Parser(SumCursor):
-    """Parser of one side of an equation."""
-
-    def side(self) -> Node:
-        """Read the whole side, which may be a list."""
-        parts = split(self._found, lambda token: token.kind == "sign" and token.text == ",")
-        if len(parts) < 2:
-            return self.whole()
-        return Call("list", tuple(self._inner(part, self._start) for part in parts))
-
-    def whole(self) -> Node:
-        """Read the whole side as one expression."""
-        tree = self._sum()
-        if self._i < len(self._found):
-            self._refuse()
-        return tree
-
-    def _product(self, argument: bool = False) -> Node:
-        """Read a term, or with `argument` the argument of a function without brackets."""
-        chain, crossed = [self._signed_factor()], ""
-        while (token := self._peek()) is not None:
-            text, sign, macro = token.text, token.kind == "sign", token.kind == "macro"
-            times = (sign and text == "*") or (macro and text in words.TIMES)
-            over = (sign and text in "/:") or (macro and text == "div")
-            if argument and (times or over or not self._continues_argument(token, chain[-1])):
-                break
-            if times:
-                crossed = self._times(token, chain, crossed)
-            elif macro and text in words.OF_SETS:
-                self._i += 1
-                return Call(words.OF_SETS[text], (product_of(chain), self._product()))
-            elif (unit := self._unit(chain[-1])) is not None:
-                return Call("in_unit", (product_of(chain), unit))
-            elif over:
-                chain = [self._over(token, chain)]
-            elif macro and text in words.BETWEEN:
-                self._i += 1
-                chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
-            elif self._begins_factor(token):
-                self._refuse_behind(chain[-1], token)
-                last = self._found[self._i - 1]
-                group = self._found[self._i + 1 : self._i + 3] if token.kind == "open" else [token]
-                worn = last.kind == "letter" or last.text in GREEK
-                beside = token.at <= last.at + len(last.text) + (last.kind == "macro")
-                numeral = [t.kind for t in group] in (["number"], ["number", "close"])
-                if numeral and worn and beside and (token.kind == "open" or last.kind == "letter"):
-                    raise Unread("a number after a letter could be an index or a power", token.at)
-                between = last.text == ")" and self._is("(", 1)
-                if (text in words.ELLIPSES and not between) or (chain[-1] == Sym("ellipsis") and text != "("):
-                    raise Unread("an ellipsis between factors is not supported", token.at)
-                chain.append(self._factor())
-            else:
-                break
-        return product_of(chain)
-
-    def _times(self, sign: Token, chain: list[Node], crossed: str) -> str:
-        """Read the right operand of a multiplication sign into a product, and return the last vector product."""
-        self._i += 1
-        before, product = chain[-1], words.OF_VECTORS.get(sign.text)
-        if product and self._is_vector(before):
-            field = isinstance(before, Call) and before.function in ("curl", "divergence")
-            if (crossed in ("cross", "dot") and "cross" in (product, crossed)) or field:
-                raise Unread("several products of vectors in a row need brackets", sign.at)
-            chain[-1] = self._of_vectors(product, before, sign)
-            return product
-        chain.append(self._signed_factor())
-        scalar = crossed == "number" or any(constant(side) is not None for side in (before, chain[-1]))
-        if sign.text == "times" and not scalar and not isinstance(before, Grid):
-            raise Unread(
-                "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot", sign.at
-            )
-        return "number" if sign.text == "times" and scalar else crossed
-
-    def _over(self, slash: Token, chain: Sequence[Node]) -> Node:
-        """Read the divisor after a slash, and return the quotient."""
-        if self._bare_end == self._i:
-            raise Unread("the argument of a function before a slash needs brackets", slash.at)
-        self._i += 1
-        following = self._peek()
-        if slash.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
-            raise Unread("a colon is not supported here", slash.at)
-        divisor, unit = self._signed_factor(), self._peek()
-        if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
-            raise Unread("units after a slash are not supported", unit.at)
-        if unit is not None and self._may_be_divided_by(unit, chain, divisor):
-            raise Unread("without brackets, it is not clear what the slash divides by", slash.at)
-        return Div(product_of(chain), divisor)
-
-    def _signed_factor(self) -> Node:
-        if self._is("-") or self._is("+"):
-            negative = self._take().text == "-"
-            inner = self._factor()
-            return Neg(inner) if negative else inner
-        return self._factor()
-
-    def _begins_factor(self, token: Token) -> bool:
-        if token.kind in ("letter", "number", "open", "begin"):
-            return True
-        if token.kind == "sign":
-            return token.text in "([" or (token.text == "|")
-        if token.kind != "macro":
-            return False
-        if token.text in ("lvert", "lVert") or (token.text in ("|", "Vert", "vert")):
-            return True
-        known = (GREEK, FUNCTIONS, words.RECIPROCALS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS)
-        return any(token.text in names for names in known) or token.text in ATOMS
-
-    def _factor(self) -> Node:
-        """Read a factor with its powers.
-
-        Every nested part of a formula is read by this function, which therefore counts the depth.
-        """
-        self._depth += 1
-        if self._depth > MAX_DEPTH:
-            at = self._found[min(self._i, len(self._found) - 1)].at
-            raise Unread(f"the formula is nested more than {MAX_DEPTH} levels deep", at)
-        try:
-            return self._factor_within()
-        finally:
-            self._depth -= 1
-
-    def _factor_within(self) -> Node:
-        token = self._peek()
-        if token is None:
-            self._take()
-        assert token is not None
-        if self._is("^") or self._is("_"):
-            return self._powers(self._in_a_frame())
-        found = self._derivative(token)
-        if isinstance(found, Call) and found.function == "diff" and self._is("("):
-            begin, arguments = self._i, self._arguments()
-            if len(arguments) > 1:
-                return self._powers(Call("value", (found, *arguments)))
-            self._i = begin
-        base = found if found is not None else self._atom()
-        return self._powers(base)
-
-    def _powers(self, base: Node) -> Node:
-        while True:
-            if self._is_transform(base):
-                base = self._transform(base)
-            elif self._is("^"):
-                self._part_transposition(base == Sym("e"))
-                at = self._take().at
-                known = isinstance(base, Sym) and base.name in self._reading.letters
-                base = self._raised(base, self._script(), at)
-                if known and self._is("(") and isinstance(base, Pow | Call):
-                    base = self._timed_behind_power(base)
-            elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
-                self._i += 2
-                base = self._taken(base, self._script(), bar.at)
-                if self._is("^"):
-                    raise Unread("this evaluation point is not supported", bar.at)
-            elif self._is("_") and not isinstance(base, Num):
-                at = self._take().at
-                base = Call("indexed", (base, self._indices_of(self._script(), at)))
-            elif self._is("'") and not isinstance(base, Num):
-                raise Unread("a prime is not allowed here", self._take().at)
-            elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
-                self._i += 1
-                base = Num(Fraction(factorial(int(base.value))))
-            elif self._is("!"):
-                self._i += 1
-                base = Call("factorial", (base,))
-            else:
-                return base
-
-    def _indices_of(self, script: Sequence[Token], at: int) -> Node:
-        """Read the index of a bracket, which is one expression or several, e.g. those of a matrix entry."""
-        letters = all(t.kind == "letter" for t in script)
-        parts = [[t] for t in script] if letters else split(script, lambda t: t.kind == "sign" and t.text == ",")
-        indices = [self._inner(part, at) for part in parts]
-        if any(isinstance(index, Mul) for index in indices):
-            raise Unread("this index is not supported", at)
-        return indices[0] if len(indices) == 1 else Call("list", tuple(indices))
-
-    def _inner(self, part: Sequence[Token], at: int) -> Node:
-        if not part:
-            raise Unread("an expression is missing here", at)
-        return self._of(part).whole()
-
-    def _atom(self) -> Node:
-        token = self._take()
-        if token.kind == "number":
-            if token.text == "0" and self._is("_"):  # the size of a zero matrix
-                self._i += 1
-                self._script()
-            return Num(Fraction(token.text))
-        if token.kind == "open":
-            self._i -= 1
-            at = token.at
-            inner = self._group()
-            if not inner and self._is("^"):
-                return self._in_a_frame()
-            if not inner:
-                return self._factor()
-            if letter := self._letter_in(inner):
-                return self._symbol(self._scripts(letter), at)
-            return self._inner(inner, at)
-        if token.kind == "sign" and token.text in "([":
-            self._i -= 1
-            return self._bracket()
-        if token.kind == "begin":
-            return self._environment(token)
-        if (token.kind == "sign" and token.text == "|") or (
-            token.kind == "macro" and token.text in ("lvert", "lVert", "|", "vert", "Vert")
-        ):
-            return self._size(token)
-        if token.kind == "macro":
-            return self._macro(token)
-        if token.kind == "letter":
-            if any(map(self._spells, words.CONSTANT)):
-                self._reading.constants = True
-                return Sym(CONSTANT)
-            if (called := self._spelled_function(token)) is not None:
-                return called
-            twice = self._peek()
-            if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
-                raise Unread("a doubled letter with an index could be one name", token.at)
-            after = self._peek()
-            beside = after is not None and after.at <= token.at + 2
-            differs = after is not None and (
-                after.kind == "letter" or after.text in GREEK or after.text in words.STYLES
-            )
-            if token.text == "d" and beside and differs:
-                return self._differential(token.at)
-            self._i -= 1
-            letter = self._letter()
-            assert letter is not None
-            return self._symbol(letter, token.at)
-        self._i -= 1
-        self._refuse()
-        raise AssertionError
-
-    def _macro(self, token: Token) -> Node:
-        name = token.text
-        if name in words.ELLIPSES or name == "infty":
-            return Sym("infinity" if name == "infty" else "ellipsis")
-        if name == "lim" or (name in words.OPTIMA and self._is("_")):
-            return self._optimum(token)
-        if name in ("frac", "tfrac", "dfrac", "cfrac"):
-            above, below = self._group(), self._group()
-            self._refuse_derivative(above, below, token.at)
-            self._refuse_units(above, below)
-            return Div(self._inner(above, token.at), self._inner(below, token.at))
-        if name in words.OPERATOR_NAMES and (called := self._called(name)) is not None:
-            return called
-        if name in ("d", "dd", "diff") and not self._is("("):
-            return self._differential(token.at)
-        if name == "binom":
-            return Call("binomial", (self._inner(self._group(), token.at), self._inner(self._group(), token.at)))
-        if name in KEPT_GROUPS:
-            inner = self._inner(self._group(), token.at)
-            if self._is("_") or self._is("^"):  # what is written beside the brace
-                self._i += 1
-                self._script()
-            return inner
-        if name in words.STYLES and (zero := self._peek_number()) is not None:
-            return zero
-        if name in words.CLOSING:
-            raise Unread(f'"\\{name}" is not supported here', token.at)
-        if name in _READERS:
-            return _READERS[name](self, token)
-        if name in FUNCTIONS:
-            return self._function(FUNCTIONS[name], token)
-        if name in words.RECIPROCALS:
-            return Div(Num(Fraction(1)), self._function(words.RECIPROCALS[name], token))
-        self._i -= 1
-        if name in words.UPRIGHT and (found := self._upright(token)) is not None:
-            return found
-        letter = self._letter()
-        if letter is None and (name in MARKS or name in ACCENTS):
-            self._i += 1
-            group = self._group()
-            if len(group) > 1 and all(t.kind == "letter" and t.text.isupper() for t in group):
-                name = "".join(t.text for t in group)
-                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", group[0].at)
-            inner = self._inner(group, token.at)
-            return Call("over", (inner, Sym(MARKS[name]))) if name in MARKS else self._dotted(inner, ACCENTS[name])
-        if letter is None:
-            self._refuse()
-        assert letter is not None
-        after = self._peek()
-        short = name in words.UPRIGHT and letter in (Letter("s"), Letter("c"))
-        if short and after is not None and after.kind == "macro" and after.text in GREEK:
-            raise Unread("s and c could be abbreviations of sine and cosine", token.at)
-        plain = name.startswith(("text", "mbox")) and len(letter.base) > 3 and letter == Letter(letter.base)
-        if plain and after is not None and self._begins_factor(after) and after.text != "(":
-            raise Unread("words inside a formula are not supported", token.at)
-        if name in words.UPRIGHT and len(letter.base) > 1 and letter.base in words.UNITS:
-            raise Unread("units in formulas are not supported", token.at)
-        if name in words.UPRIGHT and len(letter.base) > 1 and self._is("("):
-            raise Unread(f"unknown function {printable(letter.base)}", token.at)
-        return self._symbol(letter, token.at)
-
-
-_READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
-    "sqrt": lambda parser, _: parser._root(),
-    "nabla": Parser._gradient,
-    **dict.fromkeys(("sum", "prod"), Parser._sum_over),
-    **dict.fromkeys(words.INTEGRALS, Parser._integral),
-    **dict.fromkeys(words.OPENING, Parser._braces),
-}
-"""Macros that begin a construct -> the function that reads it."""

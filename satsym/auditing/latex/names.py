@@ -13,6 +13,8 @@ _LONG_WORD = 5
 """Number of adjacent letters, including vowels, from which they are read as a word."""
 _GROUPS = frozenset("Re Fr Pr Nu Pe We Ro Kn St Bi Bo Sc Sh".split())
 """Names of dimensionless numbers that are printed as two letters."""
+_UNITS = frozenset("rad deg kg Hz rpm mol".split())
+"""Units of several letters that hardly ever are products of these letters."""
 _SIGNS = frozenset(("cdot", "*"))
 """Multiplication signs: an author who writes them next to adjacent letters does not mean a product of these letters."""
 
@@ -67,6 +69,8 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
             ends = part[first - 1].at + len(part[first - 1].text) if first else 0
             apart = first == 0 or part[first].at > ends, not behind or behind[0].at > part[last - 1].at + 1
+            if name in _UNITS and first and part[first - 1].kind in ("number", "close"):
+                raise Unread("this could be a unit or a factor; set units upright", part[first].at)
             if name in SAID and (len(name) == len(part) or all(apart)):
                 raise Unread("words inside a formula are not supported", part[first].at)
             if (

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from satsym.auditing.latex import words
+from satsym.auditing.latex.cursor import MIXED_BRACKETS, listed
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
-from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
+from satsym.formula.tree import ZERO, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
 from satsym.wording import printable
 
 
@@ -64,18 +65,8 @@ class OperatorCursor(QuotientCursor):
                 raise Unread("a limit needs an arrow below it", token.at)
             ends = [self._limit(side, token.at) for side in sides]
             return Call("limit", (self._product(), *ends))
-        line = relation_in(below)
-        over = [self._inner(part, token.at) for part in split(line.sides[0], lambda t: t.text == ",")]
-        if line.signs not in ([], ["element"]):
-            raise Unread("what is written below this operator is not supported", token.at)
-        if line.signs:
-            over = [
-                Call(
-                    "element",
-                    (over[0] if len(over) == 1 else Call("list", tuple(over)), self._inner(line.sides[1], token.at)),
-                )
-            ]
-        return Call(OPTIMA[token.text], (self._sum(), *over))
+        over = self._condition(below, token.at)
+        return Call(OPTIMA[token.text], (self._sum(), *listed(over)))
 
     def _limits(self) -> dict[str, list[Token]]:
         limits: dict[str, list[Token]] = {}
@@ -148,11 +139,11 @@ class OperatorCursor(QuotientCursor):
         found = Call(name, tuple(arguments))
         return found if power is None else Pow(found, power)
 
-    def _arguments(self) -> list[Node]:
+    def _arguments(self, interval: bool = False) -> list[Node]:
         begin = self._i + 1
-        end = self._bracket_end()
+        end = self._bracket_end(interval)
         inside = self._found[begin:end]
-        parts = split(inside, lambda token: token.text == "," or (token.kind == "macro" and token.text == "quad"))
+        parts = split(inside, lambda token: token.text in (",", ";", "quad"))
         if any(token.text == "quad" for token in inside):
             parts = [part for part in parts if part]
         return [self._inner(part, self._found[begin - 1].at) for part in parts]
@@ -160,7 +151,11 @@ class OperatorCursor(QuotientCursor):
     def _bracket(self) -> Node:
         at, square = self._found[self._i].at, self._is("[")
         begin = self._i
-        arguments = self._arguments()
+        arguments = self._arguments(interval=True)
+        if self._found[self._i - 1].text != "])"[not square]:
+            if len(arguments) != 2 or self._peek() is not None:
+                raise Unread(MIXED_BRACKETS, at)
+            return Call("closed_open" if square else "open_closed", tuple(arguments))
         inner = arguments[0] if len(arguments) == 1 else None
         if len(arguments) == 1 and (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
             script = self._peek_group() if crossed.kind == "open" else [crossed]
@@ -178,10 +173,18 @@ class OperatorCursor(QuotientCursor):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
         if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
-            raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
+            before = self._found[begin - 1] if begin else None
+            if len(arguments) > 2 or (before is not None and (before.kind == "letter" or before.text in GREEK)):
+                raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
+            fields = Call("bracket", tuple(Call("bracket", a.entries) if isinstance(a, Grid) else a for a in arguments))
+            if not (self._is("(") and self._is_place_next()):
+                return fields
+            inside = self._found[self._i + 1 : self._bracket_end()]
+            return Call("value", (fields, self._inner(inside, at)))
         if len(arguments) > 1 and begin:
             before = self._found[begin - 1]
-            if not (before.kind in ("sign", "open") and before.text not in ")]'") and before.text not in words.SIGNS:
+            signed = before.kind in ("sign", "open") and before.text not in ")]'"
+            if not signed and before.kind != "number" and before.text not in words.SIGNS:
                 raise Unread("arguments in brackets after this expression are not supported", at)
         if len(arguments) == 1 and square and self._is("(") and self._is_place_next():
             raise Unread("arguments in brackets after this expression are not supported", at)
@@ -237,14 +240,16 @@ class OperatorCursor(QuotientCursor):
         if token.text.endswith("cases"):
             return self._cases(rows, token.at)
         entries = []
-        for row in rows:
-            cells = split(row, lambda t: t.kind == "sign" and t.text == "&")
-            cells = cells[:-1] if len(cells) > 1 and not cells[-1] else cells
+        parted = [split(row, lambda t: t.kind == "sign" and t.text == "&") for row in rows]
+        width = min(map(len, parted), default=1)
+        for row, cells in zip(rows, parted, strict=True):
+            if len(cells) == width + 1 and not cells[-1]:
+                cells = cells[:-1]
             if len(cells) > 1:  # commas between columns
                 cells = [cell[: len(cell) - (cell[-1:] != [] and cell[-1].text == ",")] for cell in cells]
             if len(cells) == 1:  # a row may be printed with commas
                 cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
-            entries.append(Grid(tuple(self._inner(cell, token.at) for cell in cells)))
+            entries.append(Grid(tuple(self._inner(cell, token.at) if cell else ZERO for cell in cells)))
         if not entries or len({len(entry.entries) for entry in entries}) > 1:
             raise Unread("all rows of a matrix must have the same length", token.at)
         if token.text == "vmatrix":
@@ -275,6 +280,8 @@ class OperatorCursor(QuotientCursor):
         timed = words_inside in words.AT_A_TIME
         inverse = isinstance(base, Pow) and constant(base.exponent) == -1 and not symbols(base.base) & words.FIELDS
         raised = isinstance(base, Call) and base.function == "raised"
+        if raised and symbols(base) & words.FIELDS and any(t.text in "+-" for t in inside):
+            raise Unread("the argument in brackets after this letter is not supported", self._found[begin].at)
         if (raised and timed) or ((raised or inverse) and all(map(self._place, places))):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if timed or self._place(inside) is not None or self._is_taken(inside):
@@ -298,6 +305,9 @@ class OperatorCursor(QuotientCursor):
         if not script:
             return base
         if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
+            behind = self._peek()
+            if behind is not None and "".join(t.text for t in [behind, *self._peek_group()][-1:]) in ("C", "F", "K"):
+                raise Unread("units in formulas are not supported", at)
             return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
         upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
         if len(script) == 1 and script[0].text in ("wedge", "times"):
@@ -341,6 +351,10 @@ class OperatorCursor(QuotientCursor):
             right.append(self._factor())
         return Call(product, (left, product_of(right)))
 
+    def _has_matrix(self, node: Node) -> bool:
+        """Return whether an expression contains a vector, a matrix or a capital letter."""
+        return self._is_vector(node) or any(name[:1].isupper() for name in symbols(node))
+
     def _is_vector(self, node: Node) -> bool:
         """Return whether an expression contains letters that are typeset as vectors, or a matrix."""
         if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised", "differential"):
@@ -354,6 +368,29 @@ class OperatorCursor(QuotientCursor):
             or (isinstance(part, Sym) and part.name in letters and letters[part.name].bold)
             for _, part in walk(node)
         )
+
+
+def shows_transposition(terms: Sequence[Node]) -> bool:
+    """Return whether primes in a sum can only mean the transpose.
+
+    So it is in ``x'Qx``, where the letter follows without its prime, in ``A'P + PA``, and in ``R^{-1}B'``.
+    """
+    begins: set[str] = set()
+    ends: set[str] = set()
+    for term in terms:
+        term = term.operand if isinstance(term, Neg) else term
+        factors = term.factors if isinstance(term, Mul) else ()
+        names = [part.name if isinstance(part, Sym) else "" for part in factors]
+        for k, name in enumerate(names[:-1]):
+            if name.endswith("_prime") and names[k + 1][:1].isupper() and name.removesuffix("_prime") in names[k + 2 :]:
+                return True
+            power = factors[k]
+            base = power.base if isinstance(power, Pow) and constant(power.exponent) == -1 else None
+            if base is not None and names[k + 1].endswith("_prime") and base not in factors[k + 1 :]:
+                return True
+        begins |= {names[0].removesuffix("_prime")} if names and names[0].endswith("_prime") else set()
+        ends |= {names[-1]} if names else set()
+    return any(name[:1].isupper() for name in begins & ends)
 
 
 def product_of(factors: Sequence[Node]) -> Node:

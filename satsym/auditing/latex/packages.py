@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import Token, group_end
-from satsym.auditing.latex.words import STYLES, UNITS
+from satsym.auditing.latex.words import RELATIONS, STYLES, UNITS
 
 _OTHER_NAMES = {
     "cross": "times",
@@ -36,7 +36,8 @@ _UNITS |= {"kilogram": "kg", "kelvin": "K", "watt": "W", "joule": "J", "hertz": 
 _UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " ", ".": " "}
 """Units and prefixes of the package siunitx -> how they are printed."""
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
-_DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial"}
+_DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial", "odv": "d"}
+_DERIVATIVES |= {"diff": "d", "diffp": "partial"}
 
 
 def put_in(found: Sequence[Token]) -> list[Token]:
@@ -58,13 +59,34 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         ):
             done += [replace(found[i], text="mathrm"), token]
             i += 1
-        elif name in ("boldsymbol", "bm", "mathbf") and i < len(found) and found[i].kind == "open":
+        elif name in ("boldsymbol", "bm", "mathbf", "pmb", "symbf") and i < len(found) and found[i].kind == "open":
             end = group_end(found, i)
             done += _bold(token, found[i + 1 : end - 1])
             i = end
         elif name in ("SI", "si", "num", "unit", "qty") and i < len(found) and found[i].text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside
+        elif name in ("stackrel", "underset", "overset") and (rows := _stacked(found, i)):
+            done += put_in(rows)
+            i = group_end(found, group_end(found, i))
+        elif name in ("{", "lbrace") and (rows := _values_in_cases(done, found, i)):
+            done = done[:-1] if done[-1].text == "left" else done
+            done += put_in(rows)
+            i = _environment_end(found, i)
+            i += 2 if [t.text for t in found[i : i + 2]] == ["right", "."] else 0
+        elif name == "substack" and i < len(found) and found[i].kind == "open":
+            end = group_end(found, i)
+            inside = put_in(found[i + 1 : end - 1])
+            done += [Token("sign", ",", t.at) if (t.kind, t.text) == ("macro", "\\") else t for t in inside]
+            i = end
+        elif name == "operatorname" and i < len(found) and found[i].text == "*":
+            end = group_end(found, i + 1)
+            said = "".join(t.text for t in found[i + 2 : end - 1] if t.kind == "letter")
+            optimum = said in ("argmin", "argmax")
+            done.append(replace(token, text=said) if optimum else token)
+            i = end if optimum else i + 1
+        elif name == "degree":
+            done += [Token("sign", "^", token.at), Token("macro", "circ", token.at)]
         elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
             done.append(Token("macro", f"arg{found[i].text}", token.at))
             i += 1
@@ -87,6 +109,41 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         else:
             done.append(token)
     return done
+
+
+def _environment_end(found: Sequence[Token], i: int) -> int:
+    """Return the position after the environment that begins at a position."""
+    depth = 0
+    for k in range(i, len(found)):
+        depth += (found[k].kind == "begin") - (found[k].kind == "end")
+        if depth == 0:
+            return k + 1
+    return len(found)
+
+
+def _values_in_cases(done: Sequence[Token], found: Sequence[Token], i: int) -> list[Token]:
+    """Return the rows after a brace behind an equals sign as cases; empty if they are anything else."""
+    before = [t.text for t in done if t.text not in ("left", "&", "\\,")][-1:]
+    if before != ["="] or i >= len(found) or found[i].kind != "begin" or found[i].text not in ("array", "aligned"):
+        return []
+    end = _environment_end(found, i)
+    begin = group_end(found, i + 1) if found[i].text == "array" and found[i + 1].kind == "open" else i + 1
+    closing = [t.text for t in found[end : end + 2]]
+    if closing[:1] == ["}"] or (closing[:1] == ["right"] and closing != ["right", "."]):
+        return []
+    first, last = replace(found[i], text="cases"), replace(found[end - 1], text="cases")
+    return [first, *found[begin : end - 1], last]
+
+
+def _stacked(found: Sequence[Token], i: int) -> list[Token]:
+    """Return two relations that are set above each other as a list; empty for anything else."""
+    end = group_end(found, i)
+    if end >= len(found) or found[i].kind != "open" or found[end].kind != "open":
+        return []
+    rows = [found[i + 1 : end - 1], found[end + 1 : group_end(found, end) - 1]]
+    if not all(any(t.text == "=" or t.text in RELATIONS for t in row[1:-1]) for row in rows):
+        return []
+    return [*rows[0], Token("sign", ",", found[i].at), *rows[1]]
 
 
 def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token], int]:

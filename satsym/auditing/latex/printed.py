@@ -7,26 +7,18 @@ from dataclasses import replace
 
 from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
-from satsym.auditing.latex.rows import split
-from satsym.auditing.latex.tokens import Token, Unread, group_end, has_bold, in_tex
+from satsym.auditing.latex.tokens import Token, Unread, group_end, in_tex
 from satsym.auditing.latex.words import (
     ACCENTS,
-    ARGUED,
-    AT_A_TIME,
-    COUNTERS,
-    DOUBLE_SIGNS,
     INDICES,
-    LAPSED,
     MARKS,
-    SHIFTED,
     STARS,
     STYLES,
     TRANSPOSED,
     UPRIGHT,
 )
-from satsym.formula.tree import Call, Node, Sym
 
-_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to"}
+_SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to", "=": "equal"}
 """Signs in an index -> their names."""
 
 
@@ -75,7 +67,8 @@ class LetterCursor(Cursor):
         """Return whether a delta before a letter is a sign of variation; before two letters it is a factor."""
         if sign.text not in ("delta", "Delta"):
             return False
-        if token.kind == "letter" and self._is("(", 1):
+        timed = self._peek(2) is not None and self._found[self._i + 2].text in ("t", "k", "tau") and self._is(")", 3)
+        if token.kind == "letter" and self._is("(", 1) and not timed:
             raise Unread("this delta could denote a difference, or be a factor before a bracket", sign.at)
         if token.kind == "letter":
             behind = self._peek(1)
@@ -236,164 +229,3 @@ class LetterCursor(Cursor):
             elif token.kind == "sign" and token.text in _SAID:
                 said.append(f" {_SAID[token.text]} ")
         return "".join(said)
-
-    def _symbol(self, letter: Letter, at: int) -> Node:
-        name = letter.name
-        if letter.base == "pi" and letter == Letter("pi"):
-            if self._is("(") and self._is_place_next():
-                raise Unread("pi could be a function or a number here", at)
-            return Sym("pi")
-        if not is_name(name):
-            raise Unread("this letter is not supported", at)
-        places = self._taken_at(letter)
-        self._reading.letters.setdefault(name, letter)
-        return Call("value", (Sym(name), *places)) if places else Sym(name)
-
-    def _taken_at(self, letter: Letter) -> tuple[Node, ...]:
-        """Read the arguments in brackets after a letter at which it is evaluated; empty if the bracket is a factor.
-
-        The result is also empty for ``(t)``, and for the arguments with which the letter is printed first.
-        """
-        begin = self._i
-        if self._is("["):
-            return self._member(letter)
-        if not self._is("("):
-            return ()
-        end = self._bracket_end()
-        inside = list(self._found[begin + 1 : end])
-        if not inside:
-            raise Unread("the brackets are empty", self._found[begin].at)
-        words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
-        if timed or words in (".", "cdot"):
-            return ()
-        places = split(inside, lambda t: t.text in ",;")
-        letters = [self._place(place) for place in places]
-        bare = [at for at in letters if at and (len(places) > 1 or not at.dots)]
-        primed = [at for at in bare if "prime" in at.marks and len(places) == 1]
-        bare = [at for at in bare if at not in primed or letter.base.isupper()]
-        fixed = (
-            words in AT_A_TIME
-            or (bool(primed) and bool(bare))
-            or (len(places) == 1 and bool(bare) and bool(bare[0].index))
-        )
-        number = len(inside) == 1 and inside[0].kind == "number"
-        base = letters[0]
-        scalar = len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
-        factor = base == letter or (base and base.base.isupper() if letter.bold and letter.base.isupper() else scalar)
-        matrices = base and base.bold and factor
-        crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
-        if crossed or (
-            matrices and len(places) == 1 and self._is("^")
-        ):  # a factor in front of the power of a matrix or a vector
-            self._i = begin
-            return ()
-        known = self._reading.known.get(letter.name, set())
-        lapse = letter.base in LAPSED and _is_lapse(inside)
-        argued = letter in map(Letter, ARGUED) and self._is_product(inside)
-        sure = len(places) > 1 or bare or fixed or number or known or lapse or argued or self._is_taken(inside)
-        if not sure and not self._is_shift(letter, inside):
-            barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
-            angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
-            turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
-            turned |= letter.base == "R" and angles and inside[0].text in GREEK
-            taken = self._is_product(inside) and not self._is_factor(letter, inside)
-            taken |= inside[-1].text != "T" and self._is_power(inside) and len(letter.base) + len(letter.marks) > 1
-            transformed = letter.base.isupper() and {"s"} in self._reading.known.values()
-            taken |= transformed and "s" in {t.text for t in inside} and "+" in {t.text for t in inside}
-            order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
-            divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
-            divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
-            transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
-            varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
-            shifted = inside[0].text in varied and inside[1:2] != [] and inside[1].text in "+-"
-            step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
-            step &= not any(t.text == "(" for t in inside)
-            step |= letter.base in "ghG" and _is_lapse(inside)
-            next_state = letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}
-            a_place = barred or turned or taken or order or transposed or next_state or shifted or step or divided
-            if a_place or letter.style == "cal":
-                raise Unread("the argument in brackets after this letter is not supported", self._found[begin].at)
-            self._i = begin
-            return ()
-        said = words if len(bare) < len(letters) or fixed else ",".join(at.name for at in bare)
-        self._reading.places.setdefault(letter.name, set()).add(said)
-        if len(bare) == len(letters) and not fixed and known <= {said}:
-            return ()
-        return tuple(self._inner(place, self._found[begin].at) for place in places)
-
-    def _is_place_next(self) -> bool:
-        """Return whether the next bracket contains a single letter."""
-        begin = self._i
-        end = self._bracket_end()
-        self._i = begin
-        return self._letter_in(self._found[begin + 1 : end]) is not None
-
-    def _member(self, letter: Letter) -> tuple[Node, ...]:
-        """Read the index of a member of a sequence, ``x[k + 1]``; empty if the bracket is a factor."""
-        begin = self._i
-        end = self._bracket_end()
-        inside = self._found[begin + 1 : end]
-        simple = all(t.kind in ("number", "letter", "open", "close") or t.text in "+-_" for t in inside)
-        counts = inside[:1] != [] and (inside[0].kind == "number" or inside[0].text in COUNTERS)
-        if simple and counts and letter.base not in ("E", "P"):
-            return (self._inner(inside, self._found[begin].at),)
-        self._i = begin
-        return ()
-
-    def _place(self, part: Sequence[Token]) -> Letter | None:
-        """Return the letter that is one argument of a function, with or without ``(t)``; otherwise ``None``."""
-        inner = self._of(part)
-        letter = inner._letter()
-        rest = "".join(t.text for t in part[inner._i :])
-        return letter if rest in ("", "(t)", "(tau)") else None
-
-    def _is_shift(self, letter: Letter, part: Sequence[Token]) -> bool:
-        """Return whether the bracket after a letter is an argument, as in u(t - T), rather than a factor."""
-        if letter.dots or letter.base not in SHIFTED:
-            return False
-        letters = [t.text for t in part if t.kind == "letter" or t.text in GREEK]
-        simple = all(t.kind in ("letter", "number") or t.text in GREEK or t.text in "+-_" for t in part)
-        if letter.base in "fF" and letters:
-            raise Unread("the argument in brackets after this letter is not supported", part[0].at)
-        return simple and "t" in letters and any(t.text in "+-" for t in part)
-
-    def _is_taken(self, part: Sequence[Token]) -> bool:
-        """Return whether the tokens are one letter with an argument of its own, such as x(T) in f(x(T))."""
-        inner = self._of(part)
-        letter = inner._letter()
-        called = letter is not None and (inner._is("(") or (inner._is("[") and bool(inner._member(letter))))
-        if called and inner._i < len(part):
-            inner._bracket_end()
-        return called and inner._i == len(part)
-
-    def _is_factor(self, letter: Letter, part: Sequence[Token]) -> bool:
-        """Return whether a product in brackets after a letter is a factor, as products of matrices or vectors are."""
-        crossed = any(t.text in ("times", "cdot") for t in part) and letter.base not in SHIFTED
-        bold = [t for t in part if t.kind == "macro" and t.text in STYLES]
-        plain = [
-            t for k, t in enumerate(part) if t.kind == "letter" and not (k and part[k - 1].kind in ("open", "macro"))
-        ]
-        return crossed or (letter.bold and letter.base.isupper() and bool(bold) and not plain)
-
-    def _is_power(self, part: Sequence[Token]) -> bool:
-        """Return whether the tokens are a letter with a power and nothing else."""
-        inner = self._of(part)
-        return inner._letter() is not None and inner._is("^") and inner._script_end() == len(part)
-
-    def _is_product(self, part: Sequence[Token]) -> bool:
-        """Return whether the tokens are adjacent letters; in brackets after a letter such a product is an argument."""
-        if len(part) < 2 or any((t.text in "+-*/" and t.kind == "sign") or t.text in DOUBLE_SIGNS for t in part):
-            return False
-        inner = self._of(part)
-        first = inner._letter()
-        while first is not None and inner._is("^"):
-            inner._i = inner._script_end()
-        behind = part[inner._i] if inner._i < len(part) else None
-        return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
-
-
-def _is_lapse(part: Sequence[Token]) -> bool:
-    """Return whether the tokens are a difference of two times."""
-    named = [t.text for k, t in enumerate(part) if t.kind in ("letter", "macro") and part[k - 1].text not in "_{"]
-    return len(named) == 2 and set(named) <= {"t", "tau", "s", "T"} and "-" in {t.text for t in part}

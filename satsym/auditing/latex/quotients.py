@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
-from satsym.auditing.latex.printed import LetterCursor
+from satsym.auditing.latex.places import PlaceCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
 from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 
 
-class QuotientCursor(LetterCursor):
+class QuotientCursor(PlaceCursor):
     """Parser of derivatives in printed formulas."""
 
     def _derivative(self, token: Token) -> Node | None:
@@ -96,7 +96,8 @@ class QuotientCursor(LetterCursor):
         letter = self._letter()
         if letter is None:
             raise Unread("differentials are not supported", at)
-        self._reading.differential = at
+        if letter not in (Letter("t"), Letter("tau")):  # a step in time may stand anywhere
+            self._reading.differential = at
         return Call("differential", (self._symbol(letter, at),))
 
     def _dotted(self, inner: Node, times: int) -> Node:

@@ -10,6 +10,7 @@ from itertools import pairwise
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.operators import OperatorCursor, product_of
+from satsym.auditing.latex.quotients import is_differential
 from satsym.auditing.latex.tokens import Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
 from satsym.formula.tree import Call, Node, Num, Pow, Sym, children, constant
@@ -73,8 +74,6 @@ class RefusalCursor(OperatorCursor):
         stem = last.base if isinstance(last, Pow) else last
         stem = last.arguments[0] if isinstance(last, Call) and last.function == "raised" else stem
         letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
-        if letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in FIELDS:
-            raise Unread("derivatives along vector fields are not supported", token.at)
         applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)
@@ -115,6 +114,8 @@ class RefusalCursor(OperatorCursor):
         if not above or (len(above) > 1 and above[1].text in ("^", "_")):
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
+            raise Unread("this kind of derivative is not supported", at)
+        if len(below) > 1 and is_differential(below[0]) and "d" in {t.text for t in above}:
             raise Unread("this kind of derivative is not supported", at)
         if len(above) < 2:
             return

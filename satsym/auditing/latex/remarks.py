@@ -24,6 +24,12 @@ from satsym.auditing.latex.words import (
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 _LINED = ("boxed", "fbox", "underline", "overline")
 """Macros that draw a line or frame at a whole relation."""
+_OVER = ("overset", "stackrel", "underset")
+"""Macros that set a text above or below a sign."""
+_ITALIC = frozenset(("for", "where", "with", "when", "and", "if", "s.t.", "s.t"))
+"""Words that are recognised between formulas although they are set as letters."""
+_LONGEST_WORD = max(map(len, _ITALIC))
+"""Number of characters of the longest word that is recognised although it is set as letters."""
 _NARROW = (";", ":", ">", "~", "medspace", "thickspace")
 """Spaces that are too narrow to separate formulas."""
 REMARK = "remark"
@@ -69,6 +75,15 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "macro" and token.text == "\\" and (end := _height(found, i)):
             kept.append(token)
             i = end
+        elif token.kind == "macro" and token.text in _OVER and (relation := _relation_under(found, i)):
+            found = [*found[: i - 1], relation, *found[group_end(found, group_end(found, i)) :]]
+            i -= 1
+        elif token.text == "&" and kept and kept[-1].text == ":" and found[i : i + 1] and found[i].text == "=":
+            kept[-1] = Token("macro", "coloneq", kept[-1].at)
+            i += 1
+        elif (end := _italic_word(found, i - 1)) and not depth and _stands_apart(found, i - 2):
+            kept.append(Token("macro", REMARK, token.at))
+            i = end
         elif token.kind == "macro" and token.text in _BRACKETS:
             kept.append(Token("sign", _BRACKETS[token.text], token.at))
             depth += 1 if token.text.startswith("l") else -1
@@ -78,7 +93,13 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
             end = group_end(found, i - 1)
             found = [*found[:i], *found[i : end - 1], *found[end:]]
-        elif token.kind == "open" and i + 1 < len(found) and found[i].text in SIGNS and found[i + 1].kind == "close":
+        elif (
+            token.kind == "open"
+            and i + 1 < len(found)
+            and found[i].text in SIGNS
+            and found[i + 1].kind == "close"
+            and not (kept and kept[-1].text in "^_")
+        ):
             kept.append(found[i])  # a sign in a group of its own
             i += 2
         elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
@@ -88,6 +109,11 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
         elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
             if found[i].text == ".":  # no bracket on this side
+                bar = _bar_of(found, i)
+                if bar:  # all between them is evaluated at a point
+                    inside = [Token("sign", "(", token.at), *found[i + 1 : bar], Token("sign", ")", token.at)]
+                    found = [*found[:i], *inside, *found[bar + 1 :]]
+                    i -= 1
                 i += 1
         elif (token.kind == "macro" and (token.text in SPACES - {"quad", "qquad", " "} or token.text.isspace())) or (
             token.text in ("~", "$")
@@ -108,8 +134,10 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
                 i, depth = i + 1, depth - 1
             kept.append(replace(token, text=REMARK))
         elif token.kind == "macro" and token.text in CONNECTIVES and not depth:
-            kept.append(replace(token, text=REMARK))
-        elif kept and kept[-1].at == token.at - 1 and (joined := _JOINED.get((kept[-1].text, token.text))):
+            if any(t.kind in ("letter", "number") for t in found[i:]):  # else nothing follows it
+                kept.append(replace(token, text=REMARK))
+            i = _behind_variable(found, i) if token.text == "forall" else i
+        elif kept and kept[-1].at == token.at - 1 and (joined := _joined(kept, token)):
             kept[-1] = Token("macro", joined, kept[-1].at)
         elif token.kind == "macro" and token.text == "_":
             kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
@@ -117,6 +145,74 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
             kept.append(token)
     return kept
+
+
+def _bar_of(found: Sequence[Token], i: int) -> int:
+    """Return the place of ``right`` before the bar with an index that closes an invisible bracket; 0 if none does."""
+    depth = 1
+    for k in range(i + 1, len(found) - 2):
+        depth += (found[k].text == "left") - (found[k].text == "right") if found[k].kind == "macro" else 0
+        if depth == 0:
+            fraction = found[i + 1].text in ("frac", "dfrac") and group_end(found, group_end(found, i + 2)) == k
+            return (
+                k if found[k + 1].text in ("|", "vert", "rvert") and found[k + 2].text in "_^" and not fraction else 0
+            )
+    return 0
+
+
+def _behind_variable(found: Sequence[Token], i: int) -> int:
+    """Return the position after a letter that a space parts from the relation for all its values; else the same one."""
+    k = i + 1
+    while k + 1 < len(found) and found[k].text in ("_", "^"):
+        k = group_end(found, k + 1) if found[k + 1].kind == "open" else k + 2
+    space = k < len(found) and (found[k].text in ("~", "quad", "qquad", ":", ",") or found[k].text in SPACES)
+    return k + 1 if space and (found[i].kind == "letter" or found[i].text in GREEK) else i
+
+
+def _joined(kept: Sequence[Token], token: Token) -> str:
+    """Return the sign that the last token and the next one are printed for; empty if they are signs of their own.
+
+    A bar after the second one of a pair of bars stands alone.
+    """
+    joined = _JOINED.get((kept[-1].text, token.text), "")
+    if joined != "|":
+        return joined
+    depth = bars = norms = 0
+    for before in reversed(kept):
+        depth += (before.kind == "close") - (before.kind == "open")
+        if depth < 0 or (depth == 0 and (before.text in ("=", "&", "+", "-") or before.text in RELATIONS)):
+            break
+        bars += depth == 0 and before.kind == "sign" and before.text == "|"
+        norms += depth == 0 and before.kind == "macro" and before.text == "|"
+    closes = bars % 2 == 0 and norms % 2 == 0 and [t.text for t in kept[-2:-1]] != ["|"]
+    return "" if closes else joined
+
+
+def _relation_under(found: Sequence[Token], i: int) -> Token | None:
+    """Return the relation sign that is printed with a text above or below it; ``None`` for other symbols."""
+    end = group_end(found, i)
+    inside = found[end + 1 : group_end(found, end) - 1] if end < len(found) else []
+    is_sign = len(inside) == 1 and (inside[0].text in RELATIONS or inside[0].text in ("=", "equiv"))
+    return inside[0] if is_sign and found[i].kind == found[end].kind == "open" else None
+
+
+def _italic_word(found: Sequence[Token], i: int) -> int:
+    """Return the position after a word between formulas that is set in letters; 0 if the letters spell none."""
+    said, k = "", i
+    while (
+        k < min(len(found), i + _LONGEST_WORD)
+        and found[k].kind in ("letter", "sign")
+        and found[k].at == found[i].at + k - i
+    ):
+        said, k = said + found[k].text, k + 1
+        if said in _ITALIC and (k == len(found) or found[k].kind == "macro" or found[k].text in "~&"):
+            return k
+    return 0
+
+
+def _stands_apart(found: Sequence[Token], i: int) -> bool:
+    """Return whether the token at a position is no part of a product with the one after it."""
+    return i < 0 or found[i].text in (",", "&", "~", "\\", "quad", "qquad", *SPACES)
 
 
 def _is_relation(found: Sequence[Token], i: int, anything: bool) -> bool:
@@ -211,6 +307,7 @@ def _apart(found: Sequence[Token], i: int) -> list[Token]:
 def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
     """Return whether the group at a position is plain language, either outside brackets or alone within one."""
     index = any(token.text in "^_" for token in kept[-2:-1] if kept[-1].kind == "open")
+    index |= bool(kept) and kept[-1].kind == "sign" and kept[-1].text in "^_"
     if index or i >= len(found) or found[i].kind != "open":
         return False
     end = group_end(found, i)
@@ -228,5 +325,11 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     spoken = said.strip(" .,:;()").lower()
     if spoken.startswith("constant") or spoken == "otherwise":
         return False
-    worded = spoken in SAID | SHORT_WORDS
+    padded = inside[0].at > found[i].at + 1 or found[end - 1].at > inside[-1].at + len(inside[-1].text)
+    behind = found[end] if end < len(found) else None
+    between = bool(kept) and behind is not None and behind.kind in ("letter", "macro", "open")
+    between &= behind is not None and behind.text not in ("\\\\", "quad", "qquad", "text")
+    between &= any(t.text == "=" or t.text in RELATIONS for t in found[end:])  # another formula follows the word
+    worded = spoken in SAID | SHORT_WORDS or (plain and padded and between and len(spoken) > 2 and spoken not in UNITS)
+    worded |= plain and any(ord(c) > 0x3FF and c.isalpha() for c in spoken)
     return alone or several or worded or said.endswith(":") or (said[0] == "(" and said[-1] == ")")

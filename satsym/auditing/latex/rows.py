@@ -42,9 +42,9 @@ def lines(found: Sequence[Token]) -> list[Line]:
     for place, row in _rows(found):
         for piece in (piece for part in _equations(row) for piece in _at_commas(_at_colons(part))):
             line = _sides(piece)
+            before = begun.get(place) or (begun[max(begun)] if begun else None)
             if not line.sides[0] and line.signs[0] == "tends":  # an arrow in front says that something follows
                 del line.sides[0], line.signs[0]
-            before = begun.get(place) or (begun[max(begun)] if begun else None)
             if done and place in begun:
                 before = done[-1]
             first = line.sides[0][0] if line.sides[0] else None
@@ -76,6 +76,8 @@ def _is_label(side: Sequence[Token]) -> bool:
 
 def _parted(line: Line) -> list[Line]:
     """Return the equations that are connected by an implication arrow as separate lines."""
+    if line.signs == ["tends"] * 3:  # what one quantity tends to follows from what another tends to
+        return [Line(line.sides[:2], ["tends"]), Line(line.sides[2:], ["tends"])]
     for k, sign in enumerate(line.signs):
         if sign == "tends" and "=" in line.signs[:k] and "=" in line.signs[k + 1 :]:
             first = Line(line.sides[: k + 1], line.signs[:k])
@@ -86,9 +88,9 @@ def _parted(line: Line) -> list[Line]:
 def _refuse_arrow(line: Line) -> None:
     """Refuse an arrow that could mean a limit, an implication or a map, and an inequality in a chain of relations."""
     for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
-        if sign == "unequal" and len(line.signs) > 1:
+        if sign == "unequal" and "unequal" in line.signs[:-1]:
             raise Unread("inequalities in chains of relations are not supported", (after or before)[0].at)
-        if sign == "tends" and (len(line.signs) > 1 or any(token.text == ":" for token in before)):
+        if sign == "tends" and len(line.signs) > 1 and line.signs[:-1] != ["="] * (len(line.signs) - 1):
             raise Unread("arrows between more than two expressions are not supported", (after or before)[0].at)
 
 
@@ -199,7 +201,7 @@ def _goes_on(row: Sequence[Token]) -> bool:
 def _asks(row: Sequence[Token]) -> bool:
     """Return whether a line ends with the variables of an optimisation whose cost follows after a space."""
     for k in range(len(row) - 1, -1, -1):
-        if row[k].kind == "macro" and row[k].text in OPTIMA:
+        if row[k].kind == "macro" and row[k].text in (*OPTIMA, "lim"):
             end = group_end(row, k + 2) if k + 2 < len(row) and row[k + 2].kind == "open" else k + 3
             return end >= len(row)
     return False
@@ -248,8 +250,10 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     parts = [
         piece
         for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
-        for piece in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+        for listed in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+        for piece in ([listed[:1], listed[1:]] if _lacks_comma(listed) else [listed])
     ]
+    parts = [piece for part in parts for piece in _before_condition(part)]
     listed = any(token.text in ELLIPSES for token in found)
     listed |= any(len(part) == 3 and part[0].text in COUNTERS and part[1].text == "=" for part in parts)
     for before, after in pairwise(part for part in parts if part and not listed):
@@ -277,6 +281,23 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         else:
             raise Unread("a comma is not allowed here", _between(found, kept))
     return done
+
+
+def _lacks_comma(part: Sequence[Token]) -> bool:
+    """Return whether an ellipsis and the end of a list stand side by side, without a comma between them."""
+    return len(part) == 2 and part[0].text in ELLIPSES and part[1].kind in ("letter", "number")
+
+
+def _before_condition(part: list[Token]) -> list[list[Token]]:
+    """Return a relation that ends with a number apart from the relation in brackets after it."""
+    depth = 0
+    for k in range(len(part) - 1, 1, -1):
+        depth += (part[k].text == ")") - (part[k].text == "(")
+        if depth <= 0:
+            apart = depth == 0 and k < len(part) - 1 and part[k - 1].kind == "number" and part[k - 2].text not in "_^"
+            inside = part[k + 1 : -1]
+            return [part[:k], inside] if apart and _has_relation(part[:k]) and relation_in(inside).signs else [part]
+    return [part]
 
 
 def _at_colons(found: Sequence[Token]) -> list[Token]:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from fractions import Fraction
 
 from satsym.auditing.latex import words
+from satsym.auditing.latex.cursor import listed
 from satsym.auditing.latex.enclosed import EnclosedCursor
+from satsym.auditing.latex.operators import shows_transposition
 from satsym.auditing.latex.quotients import is_differential
-from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.formula.tree import Add, Call, Mul, Neg, Node, children, symbols
+from satsym.formula.tree import Add, Call, Mul, Neg, Node, Num, Sym, children, symbols
+
+_RELATED = frozenset(words.RELATIONS.values())
+"""Functions in conditions below a sum, of which the first argument is an index."""
 
 
 class SumCursor(EnclosedCursor):
@@ -36,6 +40,7 @@ class SumCursor(EnclosedCursor):
             terms.append(Neg(term) if negative else term)
             if not self._additive():
                 break
+        self._reading.transposing |= shows_transposition(terms)
         return terms[0] if len(terms) == 1 else Add(tuple(terms))
 
     def _sum_over(self, token: Token) -> Node:
@@ -43,15 +48,15 @@ class SumCursor(EnclosedCursor):
         limits = self._limits()
         parts: list[Node] = [self._product()]
         if below := limits.get("_"):
-            line = relation_in(below)
-            if line.signs not in ([], ["="]):
-                sides = [self._inner(side, token.at) for side in line.sides]
-                parts += [Call(sign, pair) for sign, pair in zip(line.signs, pairwise(sides), strict=True)]
-            else:
-                indices = split(line.sides[0], lambda t: t.text == ",")
-                if all(t.kind == "letter" for t in line.sides[0]):  # set side by side
-                    indices = [[letter] for letter in line.sides[0]]
-                parts += [self._inner(part, token.at) for part in (*indices, *line.sides[1:2])]
+            if all(t.kind == "letter" for t in below):  # indices side by side
+                below = [t for letter in below for t in (letter, Token("sign", ",", letter.at))][:-1]
+            found = listed(self._condition(below, token.at))
+            equal = [k for k, one in enumerate(found) if isinstance(one, Call) and one.function == "equal"]
+            if len(equal) == 1 and all(isinstance(one, Sym) for one in found[: equal[0]]):  # from the lower limit on
+                parts += [*found[: equal[0]], *children(found[equal[0]])]
+                parts += [self._limit(limits.pop("^"), token.at)] if "^" in limits else []
+                found = found[equal[0] + 1 :]
+            parts += [part for one in found for part in _steps(one)]
         if "^" in limits:
             parts.append(self._limit(limits["^"], token.at))
         return Call("sum" if token.text == "sum" else "product", tuple(parts))
@@ -69,19 +74,33 @@ class SumCursor(EnclosedCursor):
                 break
             here = self._i
             if depth == 0 and here > begin and is_differential(now):
-                letters = list(self._variables())
+                volume = self._volume()
+                letters = list(self._variables()) if volume is None else []
                 behind = self._peek()
                 ends = behind is None or behind.text in ("+", "-", ")", "]")
-                if ends and all(letters) and len(letters) in (1, words.INTEGRALS[token.text]):
+                if ends and (volume or (all(letters) and len(letters) in (1, words.INTEGRALS[token.text]))):
                     along = self._found[here - 1].text == "cdot"
                     tree = self._inner(self._found[begin : here - along], token.at)
-                    over = [self._symbol(letter, now.at) for letter in letters if letter]
+                    over = [volume] if volume else [self._symbol(letter, now.at) for letter in letters if letter]
                     parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
-                    name = "line_integral" if along and letters[0] and letters[0].bold else "integral"
+                    name = "line_integral" if along and letters and letters[0] and letters[0].bold else "integral"
                     return Call({"oint": "circulation"}.get(token.text, name), tuple(parts))
             self._i = here + 1
         raise Unread("integrals without a differential at the end are not supported", token.at)
+
+    def _volume(self) -> Node | None:
+        """Read an element of volume such as ``d^3 x``; ``None``, with nothing read, if there is none."""
+        begin = self._i
+        self._i += 1
+        if self._is("^"):
+            self._i += 1
+            order = self._script()
+            letter = self._letter()
+            if letter is not None and len(order) == 1 and order[0].text in "23":
+                return Call("volume", (self._symbol(letter, order[0].at), Num(Fraction(order[0].text))))
+        self._i = begin
+        return None
 
     def _put_differential_last(self) -> None:
         """Move a differential that is printed in a numerator, or before the integrand, after the integrand."""
@@ -141,8 +160,16 @@ class SumCursor(EnclosedCursor):
         return symbols(term).union(*(letter.index.split("_") for letter in letters if letter))
 
 
+def _steps(condition: Node) -> tuple[Node, ...]:
+    """Return the relations of a chain of relations one by one."""
+    return condition.arguments if isinstance(condition, Call) and condition.function == "both" else (condition,)
+
+
 def _summed_over(term: Node) -> set[str]:
     """Return the indices of the sums that are factors of a term."""
     sums = [part for part in (term, *children(term)) if isinstance(part, Call) and part.function == "sum"]
-    over = [part.arguments[1] for part in sums if len(part.arguments) > 1]
-    return set().union(*(symbols(index.arguments[0] if isinstance(index, Call) else index) for index in over))
+    found: set[str] = set()
+    for part in sums:
+        related = [one.arguments[0] for one in part.arguments[1:] if isinstance(one, Call) and one.function in _RELATED]
+        found = found.union(*map(symbols, related or part.arguments[1:2]))
+    return found

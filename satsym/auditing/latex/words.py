@@ -29,7 +29,9 @@ STYLES = dict.fromkeys(
     "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
-UPRIGHT = frozenset("mathrm text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split())
+UPRIGHT = frozenset(
+    "mathrm texttt textsl text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split()
+)
 SPACES = frozenset(
     ", ; : ! quad qquad hspace thinspace enspace displaystyle textstyle scriptstyle nonumber notag limits nolimits "
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr mathstrut strut null hfill "
@@ -88,11 +90,14 @@ OPTIMA = {
     "sup": "supremum",
 }
 """Operators over a subscript, such as a minimum -> the function that represents them in trees."""
+EITHER_PRODUCT = "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot"
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
 NOT_COMPARED |= frozenset(
     "value cases list braces angled power raised limit sum product integral line_integral circulation cross dot "
     "skew".split()
 )
+NOT_COMPARED |= frozenset("given order between both equal times maps volume applied bracket variational".split())
+NOT_COMPARED |= frozenset("closed_open open_closed boundary".split())
 NOT_COMPARED |= frozenset("hessian transform open_interval binomial factorial".split())
 NOT_COMPARED |= frozenset("gradient divergence curl laplacian indexed indexed_norm over in_unit differential".split())
 NOT_COMPARED |= frozenset((*BETWEEN.values(), *OF_SETS.values(), *DOUBLE_SIGNS.values()))
@@ -121,7 +126,7 @@ FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
 INDICES = frozenset("max min infty perp parallel oplus odot circ star ast prime ell".split())
 """Macros that are read as words in an index."""
 AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
-ATOMS = frozenset("sum prod frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
+ATOMS = frozenset("binom sum prod frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
 ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
@@ -140,6 +145,8 @@ SAID |= frozenset(
     "et ou si avec où pour quand donc soit lorsque und oder mit für wenn dove per con para cuando".split()
 )
 """Words between formulas, in several languages."""
+OTHERWISE = frozenset("else elsewhere lainnya sonst sinon altrimenti".split())
+"""Words for the last of several cases, apart from otherwise itself."""
 SHORT_WORDS = frozenset("in on at by of is".split())
 """Words between formulas that would be read as products of letters if they were not set upright."""
 UNITS = frozenset(
@@ -150,7 +157,7 @@ COUNTERS = frozenset("i j k l m n N M K".split())
 """Letters of which the index of a member of a sequence is composed."""
 LAPSED = frozenset("phi varphi Phi varPhi psi Psi chi".split())
 """Letters of functions of elapsed time; a difference of times in brackets after such a letter is not a factor."""
-ARGUED = LAPSED | frozenset("f F".split())
+ARGUED = LAPSED | frozenset("f F sigma".split())
 """Letters of functions; a product in brackets after such a letter is not a factor."""
 SHIFTED = frozenset("f F x y z u w q X Y U".split())
 """Letters after which a bracket with time and another term, as in u(t - T), is not a factor."""

@@ -46,10 +46,16 @@ _OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argma
 _OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
 _ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
 _ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
+_ENCLOSED |= {
+    "closed_open": (r"\left[", r"\right)"),
+    "open_closed": (r"\left(", r"\right]"),
+    "boundary": (r"\partial ", ""),
+}
 _ENCLOSED |= {"open_interval": (r"\left(", r"\right)")}
 _ENCLOSED |= {"braces": (r"\left\{", r"\right\}"), "angled": (r"\langle ", r" \rangle")}
 _BETWEEN = {
     "cross": r" \times ",
+    "times": r" \times ",
     "dot": r" \cdot ",
     "tensor": r" \otimes ",
     "composed": r" \circ ",
@@ -181,9 +187,9 @@ class _Tex:
     def _sum_over(self, arguments: Sequence[Node], sign: str = r"\sum") -> tuple[str, int]:
         first, *limits = arguments
         related = [limit for limit in limits if isinstance(limit, Call) and limit.function in _SIGNS]
-        if related:
-            return rf"{sign}_{{{self._listed(related)}}} {self._bound(first, _PRODUCT)}", _SUM
-        below = f"_{{{'='.join(map(self._whole, limits[:2]))}}}" if limits else ""
+        limits = [limit for limit in limits if limit not in related]
+        said = [*filter(None, ["=".join(map(self._whole, limits[:2]))]), *map(self._whole, related)]
+        below = f"_{{{', '.join(said)}}}" if said else ""
         above = f"^{{{self._whole(limits[2])}}}" if len(limits) > 2 else ""
         return rf"{sign}{below}{above} {self._bound(first, _PRODUCT)}", _SUM
 
@@ -206,7 +212,7 @@ class _Tex:
     def _value(self, arguments: Sequence[Node]) -> tuple[str, int]:
         first, *places = arguments
         others = self._listed(places)
-        if not isinstance(first, Sym):
+        if not isinstance(first, Sym) and not (isinstance(first, Call) and first.function == "bracket"):
             return rf"{self._bound(first, _ATOM)}\Big|_{{{others}}}", _ATOM
         inside = symbols(places[0]) if len(places) == 1 else set()
         counts = inside & COUNTERS and not any(calls_in(places[0]))  # the number of a member of a sequence
@@ -267,6 +273,23 @@ _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
     "gradient": _Tex._gradient,
     "hessian": lambda tex, arguments: tex._gradient(arguments, "^2"),
     "value": _Tex._value,
+    "given": lambda tex, arguments: (rf"{tex._whole(arguments[0])} \mid {tex._listed(arguments[1:])}", _SUM),
+    "between": lambda tex, arguments: (
+        rf"{tex._bound(arguments[0], _ATOM)}\Big|_{{{tex._whole(arguments[1])}}}^{{{tex._whole(arguments[2])}}}",
+        _ATOM,
+    ),
+    "volume": lambda tex, arguments: (rf"^{{{tex._whole(arguments[1])}}} {tex._whole(arguments[0])}", _ATOM),
+    "maps": lambda tex, arguments: (
+        rf"{tex._whole(arguments[0])} : {tex._whole(arguments[1])} \to {tex._whole(arguments[2])}",
+        _SUM,
+    ),
+    "applied": lambda tex, arguments: (" ".join(tex._bound(part, _PRODUCT) for part in arguments), _PRODUCT),
+    "bracket": lambda tex, arguments: (rf"\left[{tex._listed(arguments)}\right]", _ATOM),
+    "variational": lambda tex, arguments: (
+        rf"\frac{{\delta {tex._whole(arguments[0])}}}{{\delta {tex._whole(arguments[1])}}}",
+        _ATOM,
+    ),
+    "order": lambda tex, arguments: (rf"\mathcal{{O}}\left({tex._whole(arguments[0])}\right)", _ATOM),
     "power": _Tex._any_power,
     "raised": _Tex._any_power,
     "indexed": _Tex._indexed,
