@@ -20,9 +20,10 @@ RESTORED = 2
 """Maximum number of all iterations, relative to that of iterations outside the restoration of feasibility."""
 
 SHORT_STEP, STALLED, RESTORING, DIVERGED = 0.05, 40, 60, 1e15
-"""A programme is given up after STALLED steps in a row of which less than the fraction SHORT_STEP was taken, after RESTORING
-iterations that restore feasibility, or if the dual infeasibility exceeds DIVERGED. Of 491 programmes that could be
-solved 6 met one of these limits first; those that could not took half of all iterations, of which the limits save 40 %.
+"""A programme is given up after STALLED steps in a row of which less than the fraction SHORT_STEP was taken, after
+RESTORING iterations that restore feasibility, or if the dual infeasibility exceeds DIVERGED. Of 491 programmes that
+could be solved 6 met one of these limits first. Programmes that could not be solved took half of all iterations, of
+which the limits save 40 %.
 """
 
 SOLVED, ACCEPTED = 0, 1
