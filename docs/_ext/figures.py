@@ -102,10 +102,10 @@ def sled() -> str:
     return _overview(satsym.solve(push).found)
 
 
-def study(*varied: str) -> str:
-    """The picture of a study of what is varied."""
+def study(*options: str) -> str:
+    """The picture of a study with these options."""
     with TemporaryDirectory() as out:
-        printed(["study", "return-to-orbit", *(part for one in varied for part in ("--vary", one)), "--out", out])
+        printed(["study", "return-to-orbit", *options, "--out", out])
         drawn = Path(out, "drawn")
         printed(["plot", out, "--format", "svg", "--size", "page", "--no-title", "--out", str(drawn)])
         return (drawn / "overview.svg").read_text("utf-8")
@@ -138,8 +138,11 @@ FIGURES: dict[str, Callable[[], str]] = {
     "constraint": lambda: _drawn(constraint),
     "free_time": lambda: _drawn(free_time),
     "sled": sled,
-    "study": lambda: study("initial.r=1.05:1.15:3"),  # as the tutorial has it
-    "map": lambda: study("initial.r=0.9:1.1:11", "initial.theta_dot=0.9:1.1:11"),
+    "study": lambda: study(*"--vary initial.r=0.95:1.15:9".split()),  # as the tutorial has it, and the sample as well
+    "map": lambda: study(*"--vary initial.r=0.9:1.1:11 --vary initial.theta_dot=0.9:1.1:11".split()),
+    "sample": lambda: study(
+        *"--sample 500 --normal initial.r=1.1,0.02 --normal initial.theta_dot=0.9,0.02 --seed 1".split()
+    ),
 }
 
 
