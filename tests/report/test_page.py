@@ -17,8 +17,9 @@ from satsym.analysis.regulator.feedback import simulate
 from satsym.report.html.markup import Markup, prose
 from satsym.report.page import answer
 from satsym.report.page.derived import Derived
-from satsym.report.page.motion import SECONDS, SIDE, TURNS, Attitude, motion
+from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
 from satsym.report.page.run import Given, pictures, problem, render
+from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import from_aside
 from satsym.report.terminal.certificate import condition_rows, verdict_text

@@ -16,6 +16,7 @@ from satsym.auditing.ledger.contents import Row, calls_in
 from satsym.formula.tree import Equality, Text, grid
 from satsym.formula.values import Matrix
 from satsym.records import record, shelf
+from satsym.report.display import with_raised_units
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
@@ -233,7 +234,7 @@ def _formulas(text: str) -> Iterator[Markup]:
     """Return a sentence whose formulas, between backquotes, are typeset."""
     for k, piece in enumerate(_CODE.split(text)):
         tex = formula_tex.inline(piece) if k % 2 else None
-        yield math(tex) if tex else tag("code", piece) if k % 2 else joined(piece)
+        yield math(tex) if tex else tag("code", piece) if k % 2 else joined(with_raised_units(piece))
 
 
 def _anchors(keys: Iterable[str]) -> Iterator[tuple[str, str]]:

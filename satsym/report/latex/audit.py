@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight
+from satsym.report.display import with_raised_units
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
@@ -214,7 +215,9 @@ def _fitted(tex: str) -> str:
 def _sentence(text: str) -> str:
     r"""Typeset a sentence whose formulas are between backquotes."""
     pieces = _CODE.split(text)
-    return "".join(_breakable(piece) if k % 2 == 0 else _inline(piece) for k, piece in enumerate(pieces))
+    return "".join(
+        _breakable(with_raised_units(piece)) if k % 2 == 0 else _inline(piece) for k, piece in enumerate(pieces)
+    )
 
 
 def _inline(text: str) -> str:
