@@ -9,8 +9,8 @@ from typing import Any
 from gallery import printed, themed
 from sphinx.application import Sphinx
 
-WIDE, HIGH = 6.5, 3.2
-"""Size of a figure, in inches."""
+HIGH = 4.3
+"""Height of a figure, in inches on a screen."""
 
 
 def bang_bang(page: Any, style: Any) -> None:
@@ -121,15 +121,13 @@ def _overview(found: Any) -> str:
 
 
 def _drawn(draw: Callable[[Any, Any], None]) -> str:
-    from matplotlib.figure import Figure
-
     from satsym.report.look import Look
     from satsym.report.plots import style
 
     with style.applied(Look(("svg",), titled=False, size="page")):
-        page = Figure(figsize=(WIDE, HIGH), layout="constrained")
+        page = style.figure(style.WIDTH, HIGH)
         draw(page, style)
-        return style.rendered(page, "svg").decode("utf-8")
+        return style.rendered(style.finished(page), "svg").decode("utf-8")
 
 
 FIGURES: dict[str, Callable[[], str]] = {

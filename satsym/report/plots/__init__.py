@@ -46,6 +46,16 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     return drawn
 
 
+def overview(result: Solution | Simulation, look: Look = SCREEN) -> files.Content | None:
+    """Draw the overview alone, in the first format of a look; nothing without a trajectory."""
+    from satsym.report.plots import pages, style
+    from satsym.report.plots.scene import Scene
+
+    with style.applied(look):
+        page = pages.overview(Scene.of(result))
+        return None if page is None else next(iter(style.contents("overview", page).values()))
+
+
 def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Figure]:
     """Return the pictures as figures of matplotlib, by name, for people who go on drawing."""
     from satsym.report.plots import style
