@@ -28,8 +28,8 @@ COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\
 WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
 HEAD = f"""{WRITTEN}# Gallery
 
-The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and everything that the command
-prints, including the certificate.
+The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and
+everything that the command prints, including the certificate.
 """
 COMMANDS = {
     "lqr": "geo-lqr uny-lqr uny-lqr-both lapan-roll-yaw-lqr",
