@@ -95,13 +95,15 @@ def _empty() -> Any:
 
 
 def _card(scene: Any) -> Any:
-    """The path in space, or in a phase plane, or else the first state over time."""
-    from satsym.report.plots import phase_planes, scenes, series, style
+    """The path in space, the attitude, the path in a phase plane, or else the first state over time."""
+    from satsym.report.plots import attitudes, phase_planes, scenes, series, style
     from satsym.report.plots.panels import small_multiples
 
     page = _empty()
     if (shown := scenes.Orbit.of(scene)) is not None:
         scenes.in_space(page.subplots(), shown, shown.views[0])
+    elif (turning := attitudes.Attitude.of(scene)) is not None and turning.complete:
+        attitudes.on_sphere(page.subplots(), turning)
     elif scene.instance.name not in OVER_TIME and (planes := phase_planes.of(scene)):
         phase_planes.draw(page.subplots(), planes[0])
     else:

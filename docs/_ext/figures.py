@@ -9,8 +9,8 @@ from typing import Any
 from gallery import printed, themed
 from sphinx.application import Sphinx
 
-WIDE, HIGH = 6.5, 3.2
-"""Size of a figure, in inches."""
+HIGH = 4.3
+"""Height of a figure, in inches on a screen."""
 
 
 def bang_bang(page: Any, style: Any) -> None:
@@ -102,10 +102,10 @@ def sled() -> str:
     return _overview(satsym.solve(push).found)
 
 
-def study(*varied: str) -> str:
-    """The picture of a study of what is varied."""
+def study(*options: str) -> str:
+    """The picture of a study with these options."""
     with TemporaryDirectory() as out:
-        printed(["study", "return-to-orbit", *(part for one in varied for part in ("--vary", one)), "--out", out])
+        printed(["study", "return-to-orbit", *options, "--out", out])
         drawn = Path(out, "drawn")
         printed(["plot", out, "--format", "svg", "--size", "page", "--no-title", "--out", str(drawn)])
         return (drawn / "overview.svg").read_text("utf-8")
@@ -121,15 +121,13 @@ def _overview(found: Any) -> str:
 
 
 def _drawn(draw: Callable[[Any, Any], None]) -> str:
-    from matplotlib.figure import Figure
-
     from satsym.report.look import Look
     from satsym.report.plots import style
 
     with style.applied(Look(("svg",), titled=False, size="page")):
-        page = Figure(figsize=(WIDE, HIGH), layout="constrained")
+        page = style.figure(style.WIDTH, HIGH)
         draw(page, style)
-        return style.rendered(page, "svg").decode("utf-8")
+        return style.rendered(style.finished(page), "svg").decode("utf-8")
 
 
 FIGURES: dict[str, Callable[[], str]] = {
@@ -138,8 +136,11 @@ FIGURES: dict[str, Callable[[], str]] = {
     "constraint": lambda: _drawn(constraint),
     "free_time": lambda: _drawn(free_time),
     "sled": sled,
-    "study": lambda: study("initial.r=1.05:1.15:3"),  # as the tutorial has it
-    "map": lambda: study("initial.r=0.9:1.1:11", "initial.theta_dot=0.9:1.1:11"),
+    "study": lambda: study(*"--vary initial.r=0.95:1.15:9".split()),  # as the tutorial has it, and the sample as well
+    "map": lambda: study(*"--vary initial.r=0.9:1.1:11 --vary initial.theta_dot=0.9:1.1:11".split()),
+    "sample": lambda: study(
+        *"--sample 500 --normal initial.r=1.1,0.02 --normal initial.theta_dot=0.9,0.02 --seed 1".split()
+    ),
 }
 
 

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from html import escape
-from itertools import chain
+from itertools import chain, compress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import wrap
@@ -28,8 +28,8 @@ COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\
 WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
 HEAD = f"""{WRITTEN}# Gallery
 
-The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and everything that the command
-prints, including the certificate.
+The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and
+everything that the command prints, including the certificate.
 """
 COMMANDS = {
     "lqr": "geo-lqr uny-lqr uny-lqr-both lapan-roll-yaw-lqr",
@@ -160,7 +160,7 @@ def page(known: dict[str, Any], root: Path) -> str:
         f"---\norphan: true\n---\n\n{WRITTEN}# {raised(known['title'])}\n",
         "Back to the [gallery](../gallery.md).\n",
         *(f"{picture(known, part)}\n" for part in known["pictures"]),
-        f"## Problem\n\n{about(root / known['source'])}\n\n{motion}",
+        f"## Problem\n\n{about(root / known['source'])}\n\n{motion}{quantities(name)}",
         f"The instance `{name}` provides the numerical values:\n\n```toml\n{narrow(known['file'])}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
@@ -187,6 +187,23 @@ def narrow(text: str) -> str:
         for line in lines
     )
     return "\n".join(chain.from_iterable(broken))
+
+
+def quantities(name: str) -> str:
+    """A table of the states, controls and parameters of an instance, without empty columns."""
+    from satsym import instance
+    from satsym.instance.shown import spec_of
+    from satsym.report.display import number, unit_text
+
+    case = instance.load(name)
+    spec = spec_of(case)
+    stated = [(v, role, "") for role, found in (("state", spec.states), ("control", spec.controls)) for v in found]
+    given = zip(spec.parameters, case.parameters, strict=True)
+    stated += [(v, "parameter", number(value, 10)) for v, value in given]
+    rows = [(f"${v.latex}$", f"`{v.symbol}`", role, v.meaning, value, unit_text(v.unit)) for v, role, value in stated]
+    kept = [any(column) for column in zip(*rows, strict=True)]
+    lines = [("symbol", "name", "role", "meaning", "value", "unit"), ("---",) * len(kept), *rows]
+    return "\n".join(f"| {' | '.join(compress(line, kept))} |" for line in lines) + "\n\n"
 
 
 def about(source: Path) -> str:

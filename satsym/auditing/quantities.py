@@ -48,7 +48,7 @@ class Quantity:
     dimension: Mapping[str, Fraction]
 
     def __str__(self) -> str:
-        unit = re.sub(r"\^1(?!\d)", "", base_unit(self.dimension))
+        unit = readable_unit(self.dimension)
         return f"{self.value:.6g}" if unit == "1" else f"{self.value:.6g} {unit}"
 
     def __add__(self, other: Quantity) -> Quantity:
@@ -136,6 +136,12 @@ def base_unit(dimension: Mapping[str, Fraction]) -> str:
     if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
         raise BadInput("the exponents of a unit must be integers")
     return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
+
+
+def readable_unit(dimension: Mapping[str, Fraction]) -> str:
+    """Write the unit that :func:`base_unit` returns with fractions in place of negative exponents: ``m/s^2``."""
+    found = units.factors(base_unit(dimension))
+    return units.expression(dict(sorted(found.items(), key=lambda one: one[0] != "kg"))).replace("**", "^")
 
 
 def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:

@@ -23,11 +23,13 @@ def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return a table without its empty columns, with numbers and units as in reports; empty without rows."""
     shown = [[_shown(cell) for cell in row] for row in rows]
     kept = [k for k, column in enumerate(zip(*shown, strict=True)) if any(column)]
+    right = {k for k in kept if any(_is_number(row[k]) for row in shown) and not any(" " in row[k] for row in shown)}
     body = []
     for row in shown:
-        cells = (_cell(unit_text(row[k]) if header[k] == "unit" else row[k]) for k in kept)
+        cells = (_cell(unit_text(row[k]) if header[k] == "unit" else row[k], k in right) for k in kept)
         body.append(f"<tr>{''.join(cells)}</tr>")
-    head = "".join(f'<th scope="col">{escape(header[k])}</th>' if header[k] else "<td></td>" for k in kept)
+    looks = {k: ' style="text-align: right"' if k in right else "" for k in kept}
+    head = "".join(f'<th scope="col"{looks[k]}>{escape(header[k])}</th>' if header[k] else "<td></td>" for k in kept)
     return "\n".join(["<table>", f"<tr>{head}</tr>", *body, "</table>"]) if body else ""
 
 
@@ -37,13 +39,19 @@ def facts(values: Mapping[str, Any]) -> str:
     return "\n".join(["<table>", *rows, "</table>"]) if values else ""
 
 
-def _cell(text: str) -> str:
+def _cell(text: str, right: bool = False) -> str:
     """Return a table cell with a text; numbers are not broken across lines, e.g. after the sign of an exponent."""
+    looks = [*(["white-space: nowrap"] if _is_number(text) else []), *(["text-align: right"] if right else [])]
+    style = f' style="{"; ".join(looks)}"' if looks else ""
+    return f"<td{style}>{escape(text)}</td>"
+
+
+def _is_number(text: str) -> bool:
     try:
         float(text)
     except ValueError:
-        return f"<td>{escape(text)}</td>"
-    return f'<td style="white-space: nowrap">{escape(text)}</td>'
+        return False
+    return True
 
 
 def _shown(cell: Any) -> str:

@@ -27,6 +27,9 @@ _PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "m
 _LARGEST_POWERS = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
 """Unit that takes prefixes -> the largest power of ten in common use."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_ONE = r"(?:km|m|cm|mm|kg|g|s|min|h|N|kN|J|W|V|A|rad|deg|kelvin)\b(?:(?:\*\*|\^)-?\d+)?"
+_MEASURED = re.compile(rf"(?<=\d ){_ONE}(?:[*/]{_ONE})*")
+"""Unit after a number and a space."""
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
 
 
@@ -58,6 +61,11 @@ def unit_text(unit: str) -> str:
 def raised(text: str) -> str:
     """Write powers in a text with superscripts: ``4e-8 km/s^2`` as 4e-8 km/s²."""
     return _POWER.sub(lambda power: power[1].translate(_RAISED), text)
+
+
+def with_raised_units(text: str) -> str:
+    """Write the units after numbers in a sentence as people do: ``0.22 m/s^2`` as 0.22 m/s²; all else unchanged."""
+    return _MEASURED.sub(lambda unit: unit_text(unit[0]), text)
 
 
 def capitalised(text: str) -> str:

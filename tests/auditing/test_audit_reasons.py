@@ -136,5 +136,5 @@ def test_a_letter_takes_a_plain_quantity_and_no_length() -> None:
     assert value(f"subs({rate}, omega=quantity('2 km')/quantity('1000 m'), x1=1, x4=0, u1=0)").rstrip("0") == "12."
     with pytest.raises(BadInput, match="divide it by a unit"):
         value(f"subs({rate}, omega=quantity('2 km'))")
-    assert str((quantity("8 km^3/s^3")) ** (1 / 3)) == "2000 m*s^-1"
+    assert str((quantity("8 km^3/s^3")) ** (1 / 3)) == "2000 m/s"
     assert subs(3, omega=quantity("1 m")) == 3

@@ -17,8 +17,8 @@ from satsym.report.page import explored as shown_as
 from satsym.report.page import switching_functions
 from satsym.report.page.explore import explored
 from satsym.report.page.explored import Answer, data, shown
-from satsym.report.page.motion import Attitude, about, turned_by
 from satsym.report.page.run import Given, render
+from satsym.report.plots.attitudes import Attitude, about, turned_by
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
 from satsym.solvers import solve

@@ -254,6 +254,13 @@ def test_no_page_of_the_table_has_one_quantity_of_a_group_alone() -> None:
     assert rows[-4:] == ["*", "*", "*", ""]
 
 
+def test_a_unit_that_no_quantity_has_takes_no_column() -> None:
+    plain, physical = (render(shared.shipped(name)) for name in ("bryson_denham", "polar_orbit"))
+    assert r"Symbol & Name & Default & Meaning \\" in plain
+    assert r"\multicolumn{4}{@{}l}{\textit{States}}" in plain
+    assert r"Symbol & Name & Unit & Default & Meaning \\" in physical
+
+
 def test_what_leads_to_something_is_not_the_last_line_of_a_page() -> None:
     text = render(shared.shipped("polar_orbit"))
     assert re.search(r"\n\\satsymroom\{\d+\}\nThe quantities are as follows", text)

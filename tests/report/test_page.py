@@ -17,8 +17,9 @@ from satsym.analysis.regulator.feedback import simulate
 from satsym.report.html.markup import Markup, prose
 from satsym.report.page import answer
 from satsym.report.page.derived import Derived
-from satsym.report.page.motion import SECONDS, SIDE, TURNS, Attitude, motion
-from satsym.report.page.run import Given, pictures, problem, render
+from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
+from satsym.report.page.run import Given, overview, pictures, problem, render
+from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import from_aside
 from satsym.report.terminal.certificate import condition_rows, verdict_text
@@ -109,7 +110,7 @@ def test_a_condition_that_failed_and_one_that_holds_are_told_apart_on_the_page()
     found = Certificate(Verdict.FAILED, 0.0, 0.0, 0.0, 0.0, 1.0, None, checks)
     shown = answer.certificate(found, instance.load("soft-return").model.spec, load("en"))
     assert f"generated kernels do not agree with each other</th>{CELL}1</td>{CELL}1e-09</td><td>FAILED</td>" in shown
-    assert f"boundary conditions satisfied</th>{CELL}1e-12</td>{CELL}1e-09</td><td></td>" in shown
+    assert f"boundary conditions satisfied</th>{CELL}1e-12</td>{CELL}1e-09</td><td>\N{CHECK MARK}</td>" in shown
     assert "elsewhere" not in shown, "said of certified answers only"
 
 
@@ -327,3 +328,11 @@ def test_long_equations_are_broken_into_lines_and_wide_matrices_are_small() -> N
     assert hamiltonian.index('columnalign="left"') < hamiltonian.index("</details>")
     (small,) = {int(size) for size in re.findall(r"font-size: (\d+)%", page)}
     assert 45 <= small < 100
+
+
+def test_what_a_reader_looks_for_first_comes_first(solution: Solution) -> None:
+    found = replace(solution, certificate=Certificate(Verdict.CERTIFIED, 0.0, 0.0, 0.0, 0.0, 1.0, None, ()))
+    text = str(answer.glance(found, load("en")))
+    assert [unescape(title) for title in re.findall(r"<dt>(.*?)</dt>", text)] == ["Cost", "Final time", "Certificate"]
+    assert "<dd>0.000426589</dd>" in text
+    assert str(overview(found, load("en"))).count("<svg ") == 1

@@ -14,7 +14,7 @@ from satsym import kernels
 from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
-from satsym.report.plots import curves, figures, pages, phase_planes, series, style
+from satsym.report.plots import attitudes, curves, figures, pages, phase_planes, series, style
 from satsym.report.plots import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
@@ -115,6 +115,28 @@ def test_an_own_motion_is_drawn_in_its_phase_plane_or_as_a_path(
     found = figures(Simulation(case, "none", Status.CONVERGED, "", T, x, np.sin(T)[None], {}, {}))
     assert {"orbit", "path", "phase"} & found.keys() == ({picture} if picture else set())
     assert "states" in found
+
+
+def turned() -> Simulation:
+    """The rigid body, turned by a right angle about its third axis."""
+    case, angle = instances.load("reorientation"), 0.5 * np.pi * T
+    x = np.zeros((7, len(T)))
+    x[2], x[3] = np.sin(angle / 2.0), np.cos(angle / 2.0)
+    return Simulation(case, "none", Status.CONVERGED, "", T, x, np.full((3, len(T)), 0.1), {}, {})
+
+
+def test_a_quaternion_is_drawn_by_the_axes_of_the_body_on_a_sphere() -> None:
+    """The first axis ends where the second begins, and the third stays."""
+    (axes,) = figures(turned())["attitude"].axes
+    marks = {
+        (line.get_color(), line.get_marker()): np.ravel(line.get_xydata())
+        for line in axes.get_lines()
+        if line.get_marker() in ("o", "s")
+    }
+    first, second, third = attitudes.AXES
+    np.testing.assert_allclose(marks[first, "s"], marks[second, "o"], atol=1e-12)
+    np.testing.assert_allclose(marks[third, "s"], marks[third, "o"], atol=1e-12)
+    assert {text.get_text() for text in axes.texts} == {"1", "2", "3"}
 
 
 def test_states_that_agree_on_the_trajectory_alone_are_no_rates() -> None:

@@ -547,6 +547,8 @@ def test_units_and_numbers_are_written_as_people_write_them() -> None:
     assert display.unit_text("km/s**2") == "km/s²"
     assert display.unit_text("N**2*m/s^3/rad") == "N²·m/(s³·rad)"
     assert display.unit_text("1") == ""
+    assert display.with_raised_units("It is 0.2 m/s^2, not 3 kg*m/s^2") == "It is 0.2 m/s², not 3 kg·m/s²"
+    assert display.with_raised_units("2 r^2 and x = 3 sigma^2") == "2 r^2 and x = 3 sigma^2"
     assert display.number(-1.59e-11, 3) == "\N{MINUS SIGN}1.59 × 10⁻¹¹"
     assert display.number(42164.17, 7) == "42164.17"
 

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+import satsym
 from satsym import instance
+from satsym.analysis.comparison import compare
 from satsym.instance.shown import spec_of
 from satsym.report.plots.scene import Scene
 from satsym.report.results.objects import cost_per
 from satsym.report.results.objects import units as units_object
+from satsym.report.results.studies import numbers
+from satsym.report.results.study_table import path_of
+from satsym.report.terminal.comparison import comparison_text, specs_of
 from satsym.report.terminal.solution import solution_text
 from satsym.solvers import solve
 
@@ -55,3 +61,21 @@ def test_tables_and_pictures_leave_the_units_out_and_programs_read_them() -> Non
     assert "km" not in solution_text(found)
     assert cost_per("1", Scene.of(found).spec) == "1"
     assert units_object(found.instance.model.spec)["r"] == "km"
+
+
+def test_comparisons_leave_units_out_where_the_results_do() -> None:
+    found = [compare([instance.load(name)])[0] for name in ("return-to-orbit", "soft-return")]
+    assert "km" not in comparison_text(found)
+    assert [v.unit for v in specs_of(found)[0].states] == ["1", "1", "1", "1"]
+
+
+@pytest.mark.parametrize(
+    ("name", "varied", "shown"), [("initial.r", (1.0, 1.1, 2), ""), ("parameters.sigma", (1.0, 2.0, 2), " [km]")]
+)
+def test_studies_leave_units_out_where_all_cases_are_multiples(
+    name: str, varied: tuple[float, float, int], shown: str, tmp_path: Path
+) -> None:
+    found = satsym.study("return-to-orbit", tmp_path / "study", vary={name: varied}, command="simulate")
+    drawn = numbers(path_of(found.folder), found.summary)
+    assert list(drawn.varied) == [f"{name}{shown}"]
+    assert "x_final.r [km]" in (found.folder / "table.csv").read_text("utf-8")

@@ -43,7 +43,7 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     stated = quantities.one(printed.unit)
     if dict(stated.dimension) != dict(found.dimension):
         wanted = library.written_dimension(found.dimension)
-        derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
+        derived = f"{found.value:.6g} {quantities.readable_unit(found.dimension)}"
         remark: str = say("wrong_unit", library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
     scale = stated.value

@@ -124,6 +124,8 @@ def _said(node: ast.expr, texts: Texts) -> str:
         return ", ".join(_said(part, texts) for part in node.elts)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         return f"-{_said(node.operand, texts)}"
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and _is_unit(node.right):
+        return f"{_said(node.left, texts)} {_said(node.right, texts).strip()}"
     if isinstance(node, ast.BinOp) and type(node.op) in _SIGNS:
         here = _BINDING[type(node.op)]
         sides = [
@@ -134,6 +136,11 @@ def _said(node: ast.expr, texts: Texts) -> str:
         ]
         return _SIGNS[type(node.op)].join(sides)
     return ast.unparse(node)
+
+
+def _is_unit(node: ast.expr) -> bool:
+    """Tell whether a term is a text, such as a unit that is appended to a printed number."""
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
 def _entry(node: ast.Subscript, texts: Texts) -> str:

@@ -16,6 +16,7 @@ from satsym.auditing.ledger.contents import Row, calls_in
 from satsym.formula.tree import Equality, Text, grid
 from satsym.formula.values import Matrix
 from satsym.records import record, shelf
+from satsym.report.display import raised, with_raised_units
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
@@ -118,7 +119,7 @@ class Section:
             "about": self._about(row) if row.says and not row.original else "",
             "printed": "" if beside else printed,
             "in_fact": self._beside(row, printed, derived) if beside else joined(*_formulas(self._review.fact(row))),
-            "measured": joined(*_formulas(self._review.in_words(row))) if measured(row) else "",
+            "measured": joined(*_formulas(self._review.in_words(row), raised)) if measured(row) else "",
             "chosen": self._review.chosen(row),
             "right": "" if beside else derived,
         }
@@ -229,11 +230,11 @@ def scrolled(formula: Markup) -> Markup:
     return tag("div", formula, class_="wide")
 
 
-def _formulas(text: str) -> Iterator[Markup]:
-    """Return a sentence whose formulas, between backquotes, are typeset."""
+def _formulas(text: str, written: Callable[[str], str] = with_raised_units) -> Iterator[Markup]:
+    """Return a sentence whose formulas, between backquotes, are typeset, and whose other parts are written so."""
     for k, piece in enumerate(_CODE.split(text)):
         tex = formula_tex.inline(piece) if k % 2 else None
-        yield math(tex) if tex else tag("code", piece) if k % 2 else joined(piece)
+        yield math(tex) if tex else tag("code", piece) if k % 2 else joined(written(piece))
 
 
 def _anchors(keys: Iterable[str]) -> Iterator[tuple[str, str]]:

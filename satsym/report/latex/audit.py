@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight
+from satsym.report.display import raised, with_raised_units
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
@@ -184,7 +185,7 @@ def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Itera
         "about": "" if original else _breakable(row.says),
         "printed": "" if claim or three else _printed(review.formulas.get(row.key), flat(row.printed)),
         "in_fact": "" if three else _sentence(review.fact(row)),
-        "measured": _sentence(review.in_words(row)) if measured(row) else "",
+        "measured": _sentence(review.in_words(row), raised) if measured(row) else "",
         "chosen": _breakable(review.chosen(row)),
         "right": "" if three else _printed(right, correction(row)),
         "spoils": spoiled,
@@ -211,10 +212,10 @@ def _fitted(tex: str) -> str:
     return plain if width(tex) <= formula_tex.WIDEST else rf"\resizebox{{\linewidth}}{{!}}{{{plain}}}"
 
 
-def _sentence(text: str) -> str:
-    r"""Typeset a sentence whose formulas are between backquotes."""
+def _sentence(text: str, written: Callable[[str], str] = with_raised_units) -> str:
+    r"""Typeset a sentence whose formulas are between backquotes, and whose other parts are written so."""
     pieces = _CODE.split(text)
-    return "".join(_breakable(piece) if k % 2 == 0 else _inline(piece) for k, piece in enumerate(pieces))
+    return "".join(_breakable(written(piece)) if k % 2 == 0 else _inline(piece) for k, piece in enumerate(pieces))
 
 
 def _inline(text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import compress
 
 from satsym.report.latex import tex
 from satsym.report.latex.equations import LINE, Row, array, display, width
@@ -219,16 +220,20 @@ def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
 def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts, notation: Mapping[str, str]) -> str:
     """Write all quantities in one table that may run over several pages, without a group split badly.
 
-    The last page of several has more than a row or two.
+    The last page of several has more than a row or two. A unit or a default that none of them has takes no column.
     """
     point = texts.get("words", "point")
     left = sum(map(len, groups.values()))
+    every = [v for variables in groups.values() for v in variables]
+    units, defaults = any(v.unit != "1" for v in every), any(v.default is not None for v in every)
+    kept = (True, True, units, defaults, True)
     heads = [texts.get("words", key) for key in ("symbol", "name", "unit", "default", "meaning")]
-    lines = [r"\toprule", " & ".join(heads) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot"]
+    head = " & ".join(compress(heads, kept)) + r" \\"
+    lines = [r"\toprule", head, r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot"]
     for place, (group, variables) in enumerate(groups.items()):
         if variables:
             lines += [r"\addlinespace"] if place else []
-            lines.append(rf"\multicolumn{{5}}{{@{{}}l}}{{\textit{{{texts.get('words', group)}}}}} \\*")
+            lines.append(rf"\multicolumn{{{sum(kept)}}}{{@{{}}l}}{{\textit{{{texts.get('words', group)}}}}} \\*")
         for k, v in enumerate(variables):
             cells = (
                 f"${v.latex}$",
@@ -240,9 +245,9 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts, notation: Map
             left -= 1
             alone = k < len(variables) - 1 and k in (0, len(variables) - 2)
             together = "*" if alone or 0 < left < TAIL else ""
-            lines.append(f"{' & '.join(cells)} \\\\{together}")
+            lines.append(f"{' & '.join(compress(cells, kept))} \\\\{together}")
     body = "\n".join(lines)
-    columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.42\linewidth}@{}"
+    columns = rf"@{{}}{''.join(compress('lllr', kept))}" r">{\raggedright\arraybackslash}p{0.42\linewidth}@{}"
     return f"\\begin{{longtable}}{{{columns}}}\n{body}\n\\end{{longtable}}"
 
 

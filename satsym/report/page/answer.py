@@ -20,13 +20,15 @@ from satsym.solution import Certificate, Solution
 from satsym.spec import ProblemSpec
 from satsym.status import Scope, Verdict
 
+MET = "\N{CHECK MARK}"
+"""Mark of a condition that is met."""
+
 
 def facts(solution: Solution, texts: Texts) -> Markup:
     """Return the cost, the final time, and how they were found."""
     instance, spec = solution.instance, spec_of(solution.instance)
     unit = unit_text(time_unit(spec) or "1")
-    cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
-    span = f"{number(float(solution.times[-1]), 10)} {unit}" if len(solution.times) else ""
+    cost, span = _cost_and_span(solution, 10)
     arcs: dict[str, list[str]] = {}
     for label, names, times in rows_of_arcs(solution, unit):
         arcs.setdefault(label.rstrip(":").capitalize(), []).append(f"{names} {times}")
@@ -49,6 +51,31 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     return tag("dl", *map(Markup, pairs))
 
 
+def glance(solution: Solution, texts: Texts) -> Markup:
+    """Return the numbers that a reader looks for first: the cost, the final time, and what the certificate claims."""
+    maximise, found = solution.instance.model.spec.maximise, solution.certificate
+    cost, span = _cost_and_span(solution, 6)
+    known = {
+        "maximum" if maximise else "cost": cost if solution.status.answered else message(solution.status.value),
+        "final_time": span if solution.status.answered else "",
+        "certificate": capitalised(verdict_text(found, maximise)) if found else "",
+    }
+    pairs = (
+        tag("div", tag("dt", texts.get("page", key)), tag("dd", decimal(value.strip())))
+        for key, value in known.items()
+        if value
+    )
+    return tag("dl", *pairs)
+
+
+def _cost_and_span(solution: Solution, digits: int) -> tuple[str, str]:
+    """Return the cost and the final time with their units; an empty final time without a trajectory."""
+    spec = spec_of(solution.instance)
+    cost = f"{number(spec.objective(solution.objective), digits)} {unit_text(spec.objective_unit)}"
+    unit = unit_text(time_unit(spec) or "1")
+    return cost, f"{number(float(solution.times[-1]), digits)} {unit}" if len(solution.times) else ""
+
+
 def states(solution: Solution, texts: Texts) -> Markup:
     """Return the initial and final value of each state, and its costate."""
     return table(texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam))
@@ -63,12 +90,13 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
     """Return the verdict, measured values, and comparisons, in the words of the terminal."""
     theorem = message(found.because) if theorem_lines(found) else ""
     proved = found.verdict is Verdict.CERTIFIED and found.scope is Scope.LOCAL
-    compared = competitor_rows(found, spec)
+    compared, (header, *conditions) = competitor_rows(found, spec), condition_rows(found)
+    checked = [(*header[:3], say("met")), *((*row[:3], row[3] or MET) for row in conditions)]
     return joined(
         tag("p", capitalised(verdict_text(found, spec.maximise)), "."),
         tag("p", capitalised(say("shown by: <theorem>", theorem=theorem)), ".") if theorem else "",
         tag("p", texts.get("page", "certified")) if proved else "",
-        table(texts.get("page", "checks"), condition_rows(found)),
+        table(texts.get("page", "checks"), checked),
         table(texts.get("page", "compared"), compared) if len(compared) > 1 else "",
     )
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.report.display import engineering, labelled, length_scale, number, plain, unit_text
 from satsym.report.page import switching_functions
-from satsym.report.page.motion import Attitude
 from satsym.report.plots import series, style
+from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.scenes import Orbit

@@ -27,6 +27,7 @@ from satsym.report.page.explored import Answer
 from satsym.report.page.motion import motion
 from satsym.report.plots import style
 from satsym.report.plots.scene import Scene
+from satsym.report.results.files import Content
 from satsym.report.results.objects import file_of, time_unit
 from satsym.report.said import decimal, message, say, spoken
 from satsym.report.terminal.table import figure
@@ -131,7 +132,7 @@ def _rendered(
             tag("p", texts.get("page", "about", name=instance.name, model=instance.model.spec.name), " ", verdict),
             tag("nav", tag("ul", *links), aria_label=texts.get("page", "contents")),
         ),
-        tag("main", *sections),
+        tag("main", _glance(solution, texts), *sections),
         scripts(explored) if explored else Markup(),
     ]
     head = [
@@ -143,6 +144,12 @@ def _rendered(
         tag("noscript", tag("style", WITHOUT_SCRIPTS)) if explored else Markup(),
     ]
     return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
+
+
+def _glance(solution: Solution, texts: Texts) -> Markup:
+    """Return what a reader looks for first: cost, final time, verdict, and the overview of the motion."""
+    drawn = overview(solution, texts)
+    return tag("div", answer.glance(solution, texts), drawn, class_="glance")
 
 
 def _sections(
@@ -232,19 +239,25 @@ OVERVIEW = "overview"
 """The name of the picture that repeats the others."""
 
 
+def overview(solution: Solution, texts: Texts) -> Markup:
+    """Return a figure with path, states and controls; empty without a trajectory."""
+    drawn = plots.overview(solution, Look(("svg",), titled=False))
+    return _figure(OVERVIEW, drawn, texts) if drawn else Markup()
+
+
 def pictures(solution: Solution, texts: Texts) -> list[Markup]:
     """Return a figure for each picture except the overview."""
-    found = []
-    for file, content in plots.pictures(solution, Look(("svg",), titled=False)).items():
-        name = file.removesuffix(".svg")
-        if name == OVERVIEW:
-            continue
-        stream = io.BytesIO()
-        content(stream)
-        said = texts.get("pictures", name)
-        drawing = _inline(stream.getvalue().decode("utf-8"), name, said)
-        found.append(tag("figure", drawing, tag("figcaption", said), class_="picture"))
-    return found
+    drawn = plots.pictures(solution, Look(("svg",), titled=False))
+    named = {file.removesuffix(".svg"): content for file, content in drawn.items()}
+    return [_figure(name, content, texts) for name, content in named.items() if name != OVERVIEW]
+
+
+def _figure(name: str, content: Content, texts: Texts) -> Markup:
+    stream = io.BytesIO()
+    content(stream)
+    said = texts.get("pictures", name)
+    drawing = _inline(stream.getvalue().decode("utf-8"), name, said)
+    return tag("figure", drawing, tag("figcaption", said), class_="picture")
 
 
 def themed(svg: str) -> str:

@@ -31,6 +31,7 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     dict
         Name -> content of each file, the overview first. A picture that would show nothing is left out: ``orbit`` where
         the model has no position vector, ``path`` where no states are its components or there is an ``orbit``,
+        ``attitude`` where no states are a quaternion or there is either of these,
         ``phase`` where there is either of these or no state with its rate, ``controls`` where a simulation has none,
         ``constraints`` where the model has no path constraints, ``costates`` for a simulation, ``invariants`` where
         the model has none, ``convergence`` for fewer than three iterations, and all but that where there is no
@@ -43,6 +44,16 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
         for name, page in _pages(result):
             drawn |= style.contents(name, page)
     return drawn
+
+
+def overview(result: Solution | Simulation, look: Look = SCREEN) -> files.Content | None:
+    """Draw the overview alone, in the first format of a look; nothing without a trajectory."""
+    from satsym.report.plots import pages, style
+    from satsym.report.plots.scene import Scene
+
+    with style.applied(look):
+        page = pages.overview(Scene.of(result))
+        return None if page is None else next(iter(style.contents("overview", page).values()))
 
 
 def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Figure]:
@@ -59,7 +70,10 @@ def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
-    planes, over_time = (pages.orbit, pages.path, pages.phase), (pages.states, pages.controls, pages.constraints)
+    planes, over_time = (
+        (pages.orbit, pages.path, pages.attitude, pages.phase),
+        (pages.states, pages.controls, pages.constraints),
+    )
     motion = (*planes, *over_time, pages.costates, pages.invariants)
     for picture in (pages.overview, *motion, convergence):
         page = picture(scene)

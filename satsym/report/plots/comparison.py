@@ -14,7 +14,7 @@ from satsym.report.plots import legend, style
 from satsym.report.plots.reading import ROUNDING, SMALL_DEVIATION
 from satsym.report.results import files
 from satsym.report.said import decimal, say
-from satsym.report.terminal.comparison import unit_of
+from satsym.report.terminal.comparison import specs_of, unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +27,8 @@ COLOURS = (style.INK, style.BLUE, style.VERMILION, style.GREEN, style.PURPLE, st
 DASHES: tuple[Any, ...] = ("-", "-", (0, (6, 2)), (0, (3, 1.5)), (0, (1, 1.2)), "-.")
 SHOWN = 1.12
 """Displayed duration, relative to the longest transition."""
+NEAR_ZERO = 0.5
+"""Distance of zero from a curve, relative to the range of the curve, up to which the line of zero is drawn."""
 COMMANDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 DAMPINGS = (0.2, 5.0)
 """Smallest and largest damping of the displayed range, relative to that of the instance."""
@@ -86,14 +88,9 @@ def panel(axes: Axes, cases: Sequence[Case]) -> None:
 
 def _shared(cases: Sequence[Case]) -> list[Variable]:
     """Return common states, used controls and limited quantities; those with a command or a limit come first."""
-    every = [
-        {
-            v.symbol: v
-            for v in (*c.instance.model.spec.states, *c.instance.model.spec.controls, *c.instance.model.spec.quantities)
-        }
-        for c in cases
-    ]
-    spec = cases[0].instance.model.spec
+    specs = specs_of(cases)
+    every = [{v.symbol: v for v in (*one.states, *one.controls, *one.quantities)} for one in specs]
+    spec = specs[0]
     limited = [name for case in cases for name in case.instance.limits]
     wanted = dict.fromkeys([spec.states[0].symbol, *spec.control_names, *(v.symbol for v in spec.states), *limited])
     idle = {name for name in spec.control_names if not any(case.signal(name).any() for case in cases)}
@@ -136,8 +133,8 @@ def _over_time(
 ) -> None:
     """Draw a variable of all cases, or the differences of some from the first."""
     end = SHOWN * max(_until(case) for case in cases)
-    units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
-    factor, unit = display.time_scale(units, end)
+    spec = specs_of(cases)[0]
+    factor, unit = display.time_scale([v.unit for v in (*spec.states, *spec.controls)], end)
     drawn = _drawn(cases, variable, apart)
     most = _largest(drawn.values())
     for k, values in drawn.items():
@@ -153,12 +150,14 @@ def _over_time(
     if not apart and 0.0 < limit < 2.0 * most:
         for edge in (-limit, limit):
             axes.axhline(edge / measure.divisor, **style.BOUND)
-    axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
+    low, high = (float(of([of(row[np.isfinite(row)]) for row in drawn.values()])) for of in (np.min, np.max))
+    if low - NEAR_ZERO * (high - low) <= 0.0 <= high + NEAR_ZERO * (high - low):
+        axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
     meaning = display.plain(say(variable.meaning))
     axes.set_title(say("difference from <name>", name=cases[0].instance.name) if apart else meaning)
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
-    if not apart and variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
+    if not apart and variable in spec.controls and any(impulse for _, impulse in sudden):
         # an impulse has no height; an arrow stands for it, and its size is said
         for k, (_, impulse) in enumerate(sudden):
             if impulse:

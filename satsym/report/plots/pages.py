@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from satsym.arrays import Array
 from satsym.report.display import labelled, number, unit_text
-from satsym.report.plots import legend, phase_planes, series, style
+from satsym.report.plots import attitudes, legend, phase_planes, series, style
 from satsym.report.plots import scenes as space
 from satsym.report.plots.curves import clean
 from satsym.report.plots.panels import small_multiples
@@ -79,6 +79,22 @@ def phase(scene: Scene) -> Figure | None:
     return page
 
 
+def attitude(scene: Scene) -> Figure | None:
+    """Draw the attitude on a sphere, where states give it completely and the motion has no path."""
+    found = _attitude(scene)
+    if found is None:
+        return None
+    page = style.titled(scene.title, 0.72 * style.WIDTH, 7.2)
+    attitudes.on_sphere(page.subplots(), found)
+    legend.below(page, attitudes.entries())
+    return page
+
+
+def _attitude(scene: Scene) -> attitudes.Attitude | None:
+    found = attitudes.Attitude.of(scene)
+    return found if found is not None and found.complete and space.Orbit.of(scene) is None else None
+
+
 def states(scene: Scene) -> Figure | None:
     """Draw every state, with the reference and the uncontrolled motion."""
     return _multiples(scene, series.states(scene), style.STATE)
@@ -128,27 +144,32 @@ def overview(scene: Scene) -> Figure | None:
     """Draw path, states and controls on one page under a line of facts; nothing without a trajectory."""
     if not scene.drawable:
         return None
-    shown = space.Orbit.of(scene)
+    shown, turning = space.Orbit.of(scene), _attitude(scene)
+    beside = shown is not None or turning is not None
     states, controls = series.states(scene)[:MOST_PANELS], series.controls(scene)[:MOST_PANELS]
     limits = series.unseen(scene, shown is not None and bool(shown.around.forbidden))[:MOST_PANELS]
     groups = (states, style.STATE), (controls, style.CONTROL), (limits, style.INVARIANT)
     columns = style.across(1 if len(states) == 1 else 2)
     narrow = style.across(2) == 1
     rows = sum(-(-len(quantities) // columns) for quantities, _ in groups)
-    height = max(1.0 + 1.55 * rows, 4.2 if shown is None or narrow else 6.2)
-    height += 6.0 if narrow and shown is not None else 0.0
+    height = max(1.0 + 1.55 * rows, 6.2 if beside and not narrow else 4.2)
+    height += 6.0 if narrow and beside else 0.0
     page = style.figure(style.WIDTH, height)
     right: Figure | SubFigure = page
     if style.with_titles() or not scene.result.status.answered:
         heading = _Heading.of(page, scene)
         head, right = _split(page, (2, 1), height_ratios=[heading.height, height - heading.height])
         heading.write(head, scene.result.status)
-    if shown is not None:
+    if beside:
         apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
         left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
-        _space(left, shown)
+        if shown is not None:
+            _space(left, shown)
+        elif turning is not None:
+            attitudes.on_sphere(left.subplots(), turning)
     small_multiples(right, scene, [(q, colour) for quantities, colour in groups for q in quantities], columns)
-    entries = legend.motion(scene, style.STATE) + ([] if shown is None else space.entries(shown))
+    entries = legend.motion(scene, style.STATE)
+    entries += space.entries(shown) if shown is not None else attitudes.entries() if turning is not None else []
     legend.below(page, entries + legend.on_axes([*states, *controls, *limits], style.CONTROL))
     return page
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PANEL = 3.6
-"""Height of a panel, in inches on a screen."""
+PANEL, HISTOGRAM, CURVE = 3.6, 2.8, 2.3
+"""Heights of a map, of a histogram, and of a curve over one number, in inches on a screen."""
 SHORT_RANGE = 1e3
 """Ratio of the last to the first value up to which a logarithmic axis has plain numbers."""
 GREYS = ("#D9D9D9", "#A6A6A6", "#737373", "#F0F0F0", "#BFBFBF", "#8C8C8C")
@@ -63,17 +63,20 @@ def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
 def _overview(numbers: Numbers) -> Figure:
     named = numbers.quantities
     count = max(1, len(named))
-    columns = style.columns(count, 1, PANEL, 0.5)
-    rows = -(-count // columns)
-    page = style.titled(numbers.title, style.WIDTH, PANEL * rows + 0.5)
-    places = page.subplots(rows, columns, squeeze=False).flat
     axes = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)[:1]
+    curves = numbers.shape is not None and len(axes) == 1
+    panel = CURVE if curves else PANEL if numbers.shape is not None else HISTOGRAM
+    columns = style.columns(count, 1, panel, 0.5)
+    rows = -(-count // columns)
+    page = style.titled(numbers.title, style.WIDTH, panel * rows + 0.8)
+    places = page.subplots(rows, columns, squeeze=False, sharex=curves).flat
     lacking: list[legend.Entry] = []
-    for place, (name, values) in zip(places, named.items(), strict=False):
-        if numbers.shape is not None and len(axes) == 1:
+    for k, (place, (name, values)) in enumerate(zip(places, named.items(), strict=False)):
+        if curves:
             _curve(place, numbers.varied[axes[0]], values, numbers.branch)
             _scale(place, "x", numbers.varied[axes[0]])
-            place.set_xlabel(on_axis(axes[0]))
+            place.set_xlabel(on_axis(axes[0]) if k + columns >= count else "")
+            place.tick_params(labelbottom=k + columns >= count)
             place.set_ylabel(on_axis(name))
         elif numbers.shape is not None:
             lacking = _map(page, place, numbers, name, values)
@@ -81,6 +84,7 @@ def _overview(numbers: Numbers) -> Figure:
             _histogram(place, name, values)
     for place in list(places)[len(named) :]:
         place.set_axis_off()
+    page.align_ylabels()
     _noted(page, lacking)
     return page
 

@@ -15,13 +15,15 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.choices import Command
+from satsym.instance import numbers as of_instances
+from satsym.instance.shown import spec_of
 from satsym.report.results import study_table
 from satsym.report.results.files import Content, text, to_json
 from satsym.report.results.objects import head, with_settings
 from satsym.report.results.set_list import ASKED
 from satsym.report.results.study_table import BEFORE, table
 from satsym.report.said import counted, say
-from satsym.status import Status
+from satsym.status import BadInput, Status
 from satsym.studies.asked import Study
 from satsym.studies.branches import Branches
 from satsym.studies.parts import Parts
@@ -184,7 +186,18 @@ def study_object(merged: Merged) -> dict[str, Any]:
         "worst": [_case(study, number, values) | {"objective": sense * cost} for cost, number, values in worst],
         "failures": failures,
         "branches": _branches(merged),
+        "multiples": _multiples(study),
     }
+
+
+def _multiples(study: Study) -> bool:
+    """Tell whether the numbers of the first and of the last case are multiples, which are shown without units."""
+    ends = (study.design.rows(k, k + 1)[0] for k in (0, study.design.count - 1))
+    try:
+        cases = [of_instances.at(study.instance, study.design.keys, tuple(map(float, values))) for values in ends]
+    except BadInput:  # such a case has a row, but no solution
+        cases = [study.instance]
+    return all(spec_of(case) is not case.model.spec for case in cases)
 
 
 def _branches(merged: Merged) -> dict[str, int] | None:
@@ -205,6 +218,8 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
         What result.json holds.
     """
     labels, varied = study_table.labels(path), said["varied"]
+    if said.get("multiples"):
+        labels = {name: name for name in labels}
 
     def chosen(names: list[str]) -> list[str]:
         drawn: list[str] = [name for name in DRAWN_FIRST if name in names]

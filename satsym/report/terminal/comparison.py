@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from satsym.instance.shown import spec_of
 from satsym.report.results.objects import file_of, head, plain, times, units
 from satsym.report.said import each, message, say
 from satsym.report.terminal.arcs import in_words
@@ -14,6 +15,7 @@ from satsym.status import Status
 
 if TYPE_CHECKING:
     from satsym.analysis.comparison import Case, Range
+    from satsym.spec import ProblemSpec
 
 LEFT_OUT = ("gain_rate", "gain_state")
 """Metrics that exist for one control law only, and are not compared."""
@@ -134,14 +136,28 @@ def _range(case: Case, over: Range) -> list[str]:
 
 
 def unit_of(cases: Sequence[Case], key: str) -> str:
-    """Return the unit of a metric, from its variable and its kind."""
+    """Return the unit of a metric, from its variable and its kind; empty where cases do not share it."""
+    found = {_unit_of(spec, key) for spec in specs_of(cases)} - {None}
+    return str(found.pop()) if len(found) == 1 else ""
+
+
+def specs_of(cases: Sequence[Case]) -> list[ProblemSpec]:
+    """Return the specification of each case, without units where its numbers are multiples."""
+    return [spec_of(case.instance) for case in cases]
+
+
+def _unit_of(spec: ProblemSpec, key: str) -> str | None:
+    """Return the unit of a metric of one case; ``None`` if the case does not have the metric."""
     if key in ("transition_time", "first_reached", "settling_time"):
-        return "s" if any(v.unit != "1" for v in cases[0].instance.model.spec.states) else ""
+        return "s" if any(v.unit != "1" for v in spec.states) else ""
     name, _, kind = key.rpartition("_")
-    for case in cases:
-        spec = case.instance.model.spec
-        for v in (*spec.states, *spec.quantities, *spec.controls):
-            if v.symbol == name and v.unit != "1":
-                known = {"total": times(v.unit, "s"), "effort": times(v.unit, v.unit, "s"), "energy": "J"}
-                return known.get(kind, v.unit)
-    return times(cases[0].instance.model.spec.controls[0].unit, "s") if key == "impulse" else ""
+    for v in (*spec.states, *spec.quantities, *spec.controls):
+        if v.symbol == name:
+            if v.unit == "1":
+                return ""
+            known = {"total": times(v.unit, "s"), "effort": times(v.unit, v.unit, "s"), "energy": "J"}
+            return known.get(kind, v.unit)
+    if key == "impulse":
+        unit = spec.controls[0].unit if spec.controls else "1"
+        return "" if unit == "1" else times(unit, "s")
+    return None
