@@ -47,8 +47,8 @@ from a cold start, without an initial guess. The *independent* optimum was found
 table. *Direct* is CasADi's collocation with Ipopt for the same problem, on the first mesh with a relative error of at
 most 1e-7 in the objective; the time for coarser meshes is not counted. *Ratio* is the time of the direct method divided
 by that of satsym. Because the direct method certifies nothing, the time of satsym is taken without the certificate,
-except where the certificate found the answer. Times are in seconds of processor time; each is the minimum of three runs after
-a warm-up run, so that loading libraries is not counted.
+except where the certificate found the answer. Times are in seconds of processor time; each is the minimum of three runs
+after a warm-up run, so that loading libraries is not counted.
 
 """
 HEADS = tuple("instance source independent satsym difference verdict time certified direct ratio".split())
