@@ -195,7 +195,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     moved = moved[: n + statement.own]  # what an answer says nothing of is left out
     horizon = sum(place.lengths[: len(arcs)], arb(0)) / sum(lengths, arb(0)) - 1
     if max(*moved, abs(float(horizon.mid()))) > NEAR_ANSWER:
-        raise NotProved("the solution is not an extremal: the nearest extremal has other costates")
+        raise NotProved("the solution is not an extremal: the nearest extremal has different costates")
     return shooting, place
 
 

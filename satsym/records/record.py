@@ -128,7 +128,8 @@ def load(path: Path) -> Record:
         raise BadInput(f"{printable(str(path), 200)}: no such file; write it with `satsym derive`") from None
     if status.st_size > _MOST_BYTES:
         raise BadInput(
-            f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; no record of a derivation is this large"
+            f"{printable(str(path), 200)}: larger than {_MOST_BYTES:,} bytes; "
+            "the record of a derivation cannot be this large"
         )
     found = _decoded(path, status.st_mtime_ns, status.st_size)
     for place, digest in found.sources.items():

@@ -61,7 +61,7 @@ SEED = 7
 ALIAS = "_again"
 """Ends the second name of a letter."""
 LABELS = {
-    "claim: all for any": "claim: universal for existential quantifier",
+    "claim: all for any": "claim: universal quantifier instead of existential",
     "formula: factor": "formula: added factor",
     "formula: inverted": "formula: inverted fraction",
     "formula: letter": "formula: replaced letter",

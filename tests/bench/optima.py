@@ -91,7 +91,8 @@ class Row:
         theirs = "not tried" if peer is None else f"{self.theirs:.2f}"
         if peer and not peer.reached:
             objective = self.found.instance.model.spec.objective(peer.objective)
-            theirs = f"not reached: {objective:.8g} on {peer.intervals} intervals"
+            short = "no solution" if math.isnan(objective) else f"only {objective:.8g}"
+            theirs = f"{short} with {peer.intervals} intervals"
         return (
             self.name,
             self.entry["source"],
@@ -143,7 +144,7 @@ def page(rows: list[Row]) -> str:
     table = [HEADS, ("---",) * len(HEADS), *(one.cells for one in rows)]
     routes = [f"- {one.name}: {one.entry['route']}." + _reason(one.entry) for one in rows]
     lines = [f"| {' | '.join(cells)} |" for cells in table]
-    return INTRODUCTION + "\n".join([*lines, "", summary(rows), "", "## How the optima are known", "", *routes, ""])
+    return INTRODUCTION + "\n".join([*lines, "", summary(rows), "", "## Where the optima come from", "", *routes, ""])
 
 
 def summary(rows: list[Row]) -> str:

@@ -23,7 +23,7 @@ def test_rows_far_out_are_not_drawn_but_counted() -> None:
     values[[3, 77]] = 1e9, -1e5
     reach, title = drawn(values)
     assert reach < 10.0
-    assert "not shown: 2 of 500 cases, far from the others, from −1 × 10⁵ to 1 × 10⁹" in title
+    assert "not shown: 2 of 500 cases, far from the others, with values between −1 × 10⁵ and 1 × 10⁹" in title
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,9 @@ def test_a_duration_that_is_the_objective_is_drawn_once() -> None:
 def test_only_the_side_that_is_far_out_is_said() -> None:
     values = RNG.normal(size=500)
     values[[3, 77]] = -2e5, -1e5
-    assert "not shown: 2 of 500 cases, far from the others, from −2 × 10⁵ to −1 × 10⁵" in drawn(values)[1]
+    assert (
+        "not shown: 2 of 500 cases, far from the others, with values between −2 × 10⁵ and −1 × 10⁵" in drawn(values)[1]
+    )
 
 
 def grid(values: np.ndarray, name: str) -> object:

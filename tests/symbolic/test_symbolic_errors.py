@@ -353,7 +353,8 @@ def test_a_weight_has_to_be_declared_positive() -> None:
 def test_a_box_needs_uncoupled_controls() -> None:
     coupled = EFFORT + u1 * u2 / 4
     assert complaint(problem(running_cost=coupled, control_set="box")) == (
-        "task: in a box, H_uu must be diagonal, because only then does clipping each control minimise H"
+        "task: if the control set is a box, H_uu must be diagonal, "
+        "because only then does clipping each control minimise H"
     )
     assert derive(problem(running_cost=coupled)).steps
 

@@ -289,7 +289,9 @@ def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
     try:
         return dict(zip(names, member, strict=True))
     except (TypeError, ValueError):
-        raise BadInput(f"each member of the family is {in_words(member)}, not {len(names)} values") from None
+        raise BadInput(
+            f"each member of the family must consist of {len(names)} values, but one is {in_words(member)}"
+        ) from None
 
 
 def _joined(answers: list[Answer], conjunction: bool) -> Answer:

@@ -209,7 +209,7 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
                 say("not shown: <count> of <rows> cases, far from the others, at <value>", **counts, value=low)
                 if low == high
                 else say(
-                    "not shown: <count> of <rows> cases, far from the others, from <low> to <high>",
+                    "not shown: <count> of <rows> cases, far from the others, with values between <low> and <high>",
                     **counts,
                     low=low,
                     high=high,

@@ -23,7 +23,7 @@ _HOLDS = {
     "switching times": "switching times confirmed by integration",
     "stated times of events": "events occur at the stated times",
     "stated switching times, to the spacing of the nodes": (
-        "controls switch between the nodes adjacent to the stated times"
+        "each switch lies between the two nodes adjacent to its stated time"
     ),
     "stated times of saturation": "controls reach their bounds at the stated times",
     "the two minimisers of H are still equally good after a jump": (

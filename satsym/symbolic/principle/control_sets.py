@@ -60,7 +60,8 @@ def project(
     if control_set == "box":
         if not hessian.is_diagonal():
             raise DerivationError(
-                "in a box, H_uu must be diagonal, because only then does clipping each control minimise H"
+                "if the control set is a box, H_uu must be diagonal, "
+                "because only then does clipping each control minimise H"
             )
         return [Clip(u, limits[i], limits[m + i]) for i, u in enumerate(unconstrained)]
     if control_set == "ball":
