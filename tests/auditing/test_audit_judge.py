@@ -300,7 +300,7 @@ def test_numbers_are_held_to_what_their_digits_claim(tmp_path: Path, key: str) -
         tmp_path, [row("it", printed, holds, "number", inputs={"h": "1 m", "about": "~ 1.0 m", "one": "1 s"})], head
     )["it"]
     assert found.verdict == verdict
-    assert ("customary c_light = 3e8 m/s" in found.diagnosis) == (key == "of a school book")
+    assert ("customary value c_light = 3e8 m/s" in found.diagnosis) == (key == "of a school book")
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,7 @@ def test_the_kind_is_coloured_by_whether_it_closes() -> None:
 @pytest.mark.parametrize(
     ("changed", "complaint"),
     [
-        ({"x": "0.0"}, "case.toml: [initial]: position is the centre itself; start somewhere else"),
+        ({"x": "0.0"}, "case.toml: [initial]: the position is the centre itself; start elsewhere"),
         ({"mu": "0.0"}, "[parameters] mu: 0 is outside the domain of mu"),
         ({"mu": "-1.0"}, "[parameters] mu: -1 is outside the domain of mu"),
         ({"x": "nan"}, "[initial] x: the number is nan"),

@@ -191,7 +191,7 @@ DRAWN = {"normal": {"initial.r": (1.0, 0.1)}}
         ({"vary": {"initial.r": (0.9, None, 2)}}, "initial.r: "),
         (DRAWN | {"sample": 2.5}, "sample: got 2.5; give a whole number"),
         (DRAWN | {"sample": "2"}, "sample: got"),
-        (DRAWN | {"sample": 0}, "write a whole number"),
+        (DRAWN | {"sample": 0}, "give a whole number"),
         (DRAWN | {"sample": 3, "method": "qmc"}, '"sobol", "lhs", "random"'),
         (DRAWN | {"sample": 3, "seed": 1.5}, "seed: got 1.5"),
         (GRID | {"command": 3}, '"solve", "simulate", "lqr"'),

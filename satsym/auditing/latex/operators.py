@@ -129,8 +129,6 @@ class OperatorCursor(QuotientCursor):
             return arguments[0] if arguments[0].function == "det" else Call("det", arguments[0].arguments)
         if name == "d":
             return self._along(arguments[0])
-        if name == "exp" and len(arguments) == 1 and power is None:
-            return Call("exp", (arguments[0],))
         wanted = {"min": 2, "max": 2, "atan2": 2, "diff": 2}.get(name, 1)
         if name in ("min", "max") and len(arguments) == 1 and power is None:
             return Call(OPTIMA[name], (arguments[0],))
