@@ -23,15 +23,9 @@ def random(instance: Instance) -> bool:
 
 
 def drawn(programme: Programme, seed: int, start: Array, end: Array) -> tuple[Array, Array]:
-    """Return initial and final states in which those that are free have random values.
-
-    Their standard deviations lie between the scales of the states and the ranges of the uncontrolled motions from both
-    ends, because neither shows by itself how far cheap motions lead: a pendulum may start near its rest and turn over.
-    """
+    """Return initial and final states in which those that are free have random values."""
     start, end, rng = start.copy(), end.copy(), np.random.default_rng(seed)
-    sizes, instance = programme.sizes.states, programme.instance
-    wide = np.maximum(ranges(instance, programme.controls, programme.sizes.duration) / sizes, 1.0)
-    deviations = sizes * wide ** _spread(seed)
+    instance, deviations = programme.instance, spread(programme, seed)
     for one in instance.free:
         if one.place is Place.INITIAL:
             value = deviations[one.index] * rng.normal()
@@ -46,7 +40,18 @@ def drawn(programme: Programme, seed: int, start: Array, end: Array) -> tuple[Ar
     return start, end
 
 
-def _spread(number: int) -> float:
+def spread(programme: Programme, seed: int) -> Array:
+    """Return standard deviations (n,) of random states, which differ from start to start.
+
+    They lie between the scales of the states and the ranges of the uncontrolled motions from both ends, because neither
+    shows by itself how far cheap motions lead: a pendulum may start near its rest and turn over.
+    """
+    sizes = programme.sizes.states
+    wide = np.maximum(ranges(programme.instance, programme.controls, programme.sizes.duration) / sizes, 1.0)
+    return np.asarray(sizes * wide ** _share(seed))
+
+
+def _share(number: int) -> float:
     """Return the entry of van der Corput's sequence with that number, which lies between 0 and 1."""
     value, share = 0.0, 1.0 / BASE
     while number:

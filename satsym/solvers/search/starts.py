@@ -256,8 +256,9 @@ def _overlaid(programme: Programme, x: Array, v: Array, share: Array) -> None:
 def _bent(programme: Programme, x: Array, v: Array, share: Array, plan: Plan) -> tuple[Array, Array]:
     """Return states and controls with random waves added."""
     rng, controls, sizes = np.random.default_rng(plan.seed), programme.controls, programme.sizes
+    deviations = ends.spread(programme, plan.drawn) if plan.drawn else sizes.states
     waves = np.array([np.sin(np.pi * k * share) / k for k in range(1, WAVES + 1)])
-    x = x + plan.noise * sizes.states[:, None] * (rng.normal(size=(len(x), WAVES)) @ waves)
+    x = x + plan.noise * deviations[:, None] * (rng.normal(size=(len(x), WAVES)) @ waves)
     span = controls.upper - controls.lower
     span = np.where(np.isfinite(span), span, 2.0 * sizes.variables)
     beats = np.array([np.cos(np.pi * k * share[1:]) / k for k in range(1, WAVES + 1)])
