@@ -22,7 +22,7 @@ from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.improving import improved, starting_from
 from satsym.solvers.search import solving
 from satsym.solvers.search.order import Tried
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.starts.planning import Plan
 from satsym.solvers.symmetry import symmetric
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of

@@ -18,8 +18,8 @@ from satsym.report.page import switching_functions
 from satsym.report.page.explore import explored
 from satsym.report.page.explored import Answer, data, shown
 from satsym.report.page.run import Given, render
-from satsym.report.plots.attitudes import Attitude, about, turned_by
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.space.attitudes import Attitude, about, turned_by
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.status import BadInput

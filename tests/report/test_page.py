@@ -19,9 +19,9 @@ from satsym.report.page import answer
 from satsym.report.page.derived import Derived
 from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
 from satsym.report.page.run import Given, overview, pictures, problem, render
-from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.views import from_aside
+from satsym.report.plots.space.attitudes import Attitude
+from satsym.report.plots.space.views import from_aside
 from satsym.report.terminal.certificate import condition_rows, verdict_text
 from satsym.report.terminal.solution import solution_text
 from satsym.report.texts import load

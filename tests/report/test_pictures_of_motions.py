@@ -14,11 +14,12 @@ from satsym import kernels
 from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
-from satsym.report.plots import attitudes, curves, figures, pages, phase_planes, series, style
+from satsym.report.plots import curves, figures, pages, phase_planes, series, style
 from satsym.report.plots import plane as eigenvalue_plane
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.plots.space import attitudes
 from satsym.report.plots.studies import figures as of_study
 from satsym.report.plots.studies import on_axis
 from satsym.report.results.studies import Numbers, distinguishing

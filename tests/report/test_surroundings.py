@@ -11,11 +11,12 @@ from sympy import Symbol
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.report import plots
-from satsym.report.plots import curves, phase_planes, series, surroundings
+from satsym.report.plots import curves, phase_planes, series
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.scenes import Orbit
-from satsym.report.plots.views import from_aside
+from satsym.report.plots.space import surroundings
+from satsym.report.plots.space.views import from_aside
 from satsym.report.results import restrictions
 from satsym.solution import Event, Simulation
 from satsym.solvers import solve

@@ -14,7 +14,7 @@ from satsym import instance
 from satsym.report import display
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.scenes import Orbit
-from satsym.report.plots.views import views
+from satsym.report.plots.space.views import views
 from satsym.solvers import simulate
 
 LABELS = ("x", "y", "z")

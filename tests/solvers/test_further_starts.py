@@ -81,3 +81,14 @@ def test_programmes_that_stall_leave_time_for_those_that_do_not() -> None:
         )
     )
     assert found.objective == pytest.approx(4.876925, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_free_start_from_which_nothing_needs_to_be_done_is_certified() -> None:
+    """The uncontrolled motion backwards from the end is optimal: cost and costates consist of rounding."""
+    found = satsym.solve(
+        satsym.Instance.of(LIBRATION, initial={"a": "free", "w": "free"}, final={"a": -1.0275, "w": -0.5277}, tf=7.5777)
+    )
+    assert found.objective == pytest.approx(0.0, abs=1e-30)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED

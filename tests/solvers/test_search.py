@@ -24,12 +24,13 @@ from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.multipoint import equations, laws, newton
-from satsym.solvers.search import following, mesh, motion, nlp, order, solving, starts
+from satsym.solvers.search import following, mesh, motion, nlp, order, solving
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.reading import extremals, levels
 from satsym.solvers.search.sizes import sizes_of
+from satsym.solvers.search.starts import planning
 from satsym.solvers.search.tried import Past
 from satsym.status import Status, Verdict
 from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, symbols_of, t
@@ -57,7 +58,7 @@ def programme_of(case: Instance, intervals: int = 12) -> Programme:
 
 def begun_near(programme: Programme, seed: int) -> np.ndarray:
     with np.errstate(all="ignore"):
-        w = starts.begun(programme, starts.Plan(noise=0.05, seed=seed))
+        w = planning.begun(programme, planning.Plan(noise=0.05, seed=seed))
     w = w + 1e-2 * np.random.default_rng(seed).normal(size=len(w))
     return np.clip(w, *programme.bounds)
 
@@ -401,7 +402,7 @@ def test_what_smoothing_adds_to_a_cost_is_taken_from_it(smoothing: float) -> Non
     case, least = instances.load("double-integrator-fuel"), 3.0 - np.sqrt(5.0)
     even = programme_of(case, 80)
     programme = Programme(case, even.controls, even.meshes, even.sizes, smoothing)
-    found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+    found = nlp.solve(programme, planning.begun(programme, planning.Plan()))
     assert found.solved
     plain = programme.objective(found.unknown) * programme.sizes.cost
     assert plain - least > 10.0 * abs(found.objective - least)
@@ -413,7 +414,7 @@ def test_no_smoothing_takes_anything_from_the_largest_norm() -> None:
     case = replace(instances.load("double-integrator-fuel"), tf=2.0 + 1e-9)
     even = programme_of(case)
     programme = Programme(case, even.controls, even.meshes, even.sizes, 1e-1)
-    found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+    found = nlp.solve(programme, planning.begun(programme, planning.Plan()))
     assert found.solved
     u = programme.controls.controls(programme.unpacked(found.unknown)[1])
     assert np.abs(u).min() > 0.999
@@ -423,7 +424,7 @@ def test_programmes_end_with_the_work_that_is_allowed() -> None:
     programme = programme_of(instances.load("reorientation"))
     limits = Limits(MOST_ITERATIONS, np.inf, work=3.5 * programme.unknowns)
     with np.errstate(all="ignore"):
-        start = starts.begun(programme, starts.Plan())
+        start = planning.begun(programme, planning.Plan())
     found = nlp.solve(programme, start, limits)
     assert not found.solved
     assert found.iterations <= 5
@@ -520,7 +521,7 @@ def test_intervals_are_halved_at_most_where_a_mesh_does_not_resolve_its_motion(
 ) -> None:
     programme = programme_of(instances.load("return-to-orbit"))
     with np.errstate(all="ignore"):
-        found = nlp.solve(programme, starts.begun(programme, starts.Plan()))
+        found = nlp.solve(programme, planning.begun(programme, planning.Plan()))
     monkeypatch.setattr(mesh, "_residuals", lambda _: np.where(np.arange(programme.intervals) == 3, residual, 0.0))
     (edges,), largest = mesh.refined(found)
     assert largest == residual

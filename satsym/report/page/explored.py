@@ -15,12 +15,12 @@ from satsym.arrays import Array
 from satsym.report.display import engineering, labelled, length_scale, number, plain, unit_text
 from satsym.report.page import switching_functions
 from satsym.report.plots import series, style
-from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.scenes import Orbit
 from satsym.report.plots.series import Series
-from satsym.report.plots.surroundings import Surroundings
+from satsym.report.plots.space.attitudes import Attitude
+from satsym.report.plots.space.surroundings import Surroundings
 from satsym.report.results.objects import cost_per
 from satsym.report.said import decimal, say
 from satsym.solution import Solution

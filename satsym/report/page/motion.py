@@ -12,11 +12,11 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.plots.attitudes import Attitude
 from satsym.report.plots.reading import box
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.scenes import Orbit
-from satsym.report.plots.views import from_aside
+from satsym.report.plots.space.attitudes import Attitude
+from satsym.report.plots.space.views import from_aside
 from satsym.report.said import decimal
 from satsym.report.texts import Texts
 

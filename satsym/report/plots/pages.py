@@ -13,12 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from satsym.arrays import Array
 from satsym.report.display import labelled, number, unit_text
-from satsym.report.plots import attitudes, legend, phase_planes, series, style
+from satsym.report.plots import legend, phase_planes, series, style
 from satsym.report.plots import scenes as space
 from satsym.report.plots.curves import clean
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.plots.space import attitudes
 from satsym.report.said import counted, decimal, message, say
 from satsym.solution import Solution
 from satsym.status import Status

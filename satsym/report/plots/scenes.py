@@ -11,11 +11,12 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, formula, labelled, length_scale, length_unit, number, plain, unit_text
-from satsym.report.plots import curves, legend, series, style, surroundings
+from satsym.report.plots import curves, legend, series, style
 from satsym.report.plots.reading import BURIED, ROUNDING, box
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.surroundings import NOTHING, Surroundings
-from satsym.report.plots.views import View, from_aside, views
+from satsym.report.plots.space import surroundings
+from satsym.report.plots.space.surroundings import NOTHING, Surroundings
+from satsym.report.plots.space.views import View, from_aside, views
 from satsym.report.said import say
 
 if TYPE_CHECKING:

@@ -65,7 +65,8 @@ def of_analysis(found: Analysis, look: Look = SCREEN) -> Pictures:
 
 def of_orbit(found: Survey, look: Look = SCREEN) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
-    from satsym.report.plots import conics, plane
+    from satsym.report.plots import plane
+    from satsym.report.plots.space import conics
 
     pictures: dict[str, Callable[[], Figure | None]] = {
         "orbit": lambda: conics.page(found),

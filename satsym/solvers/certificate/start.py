@@ -18,6 +18,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance.unknowns import Place, Unknown
 from satsym.solution import Certificate, Check, Solution
+from satsym.solvers.certificate.competitors.drawn import natural
 from satsym.solvers.certificate.end_form import final_values, multipliers
 from satsym.solvers.certificate.jacobi import NOT_STRICT
 from satsym.solvers.collocation.scaling import final_argument
@@ -33,6 +34,10 @@ STILL = 1e-2
 """Minimum reference for curvatures, relative to the cost. Curvatures smaller than ``FLAT`` times it count as zero."""
 
 COMPLEX_STEP = 1e-30
+
+ROUNDING = 1e-12
+"""Derivative of the minimum cost, relative to the cost of controls that change the states by their own magnitudes, that
+counts as zero: where the uncontrolled motion is optimal, all costates consist of rounding."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +60,7 @@ def slope(solution: Solution, unknown: Unknown) -> Slope:
     if unknown.place is Place.INITIAL:
         lam, x = np.abs(solution.lam).max(axis=1), np.abs(solution.x).max(axis=1)
         i = unknown.index
-        energy = float(lam @ x) + abs(solution.objective)
+        energy = float(lam @ x) + abs(solution.objective) + ROUNDING / STATIONARY * _effort(solution)
         return Slope(float(solution.lam[i, 0]), max(float(lam[i]), energy / max(float(x[i]), 1e-300)))
     if unknown.place is Place.TIME:
         instance = solution.instance
@@ -68,6 +73,15 @@ def slope(solution: Solution, unknown: Unknown) -> Slope:
     along, its_size = _along(solution, unknown.index)
     end, end_size = _at_the_end(solution, unknown.index)
     return Slope(along + end, its_size + end_size)
+
+
+def _effort(solution: Solution) -> float:
+    """Return the running cost of controls that change the states by their own magnitudes; 0 if it is not finite."""
+    instance, times = solution.instance, solution.times
+    u = instance.control_set.project(natural(solution)[:, None] * np.ones(len(times)))
+    rate = np.abs(instance.model.running_cost_batch(times, solution.x, u, instance.parameters))
+    found = float(np.mean(rate)) * float(times[-1] - times[0])
+    return found if np.isfinite(found) else 0.0
 
 
 def _along(solution: Solution, index: int) -> tuple[float, float]:

@@ -15,13 +15,14 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import nlp, starts
+from satsym.solvers.search import nlp
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of, wanted
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.starts import planning
+from satsym.solvers.search.starts.planning import Plan
 from satsym.solvers.search.transcription import FREE, Function
 
 ARRIVED = 1e-4
@@ -120,7 +121,7 @@ def arriving(instance: Instance, controls: Controls, meshes: Sequence[Array], pl
     sizes = replace(sizes, states=np.maximum(sizes.states, moved.states))
     programme = Missing(instance, controls, meshes, sizes)
     begun = programme if not plan.arriving else Missing(free, controls, meshes, sizes)
-    return nlp.solve(programme, starts.begun(begun, plan), limits, ITERATIONS)
+    return nlp.solve(programme, planning.begun(begun, plan), limits, ITERATIONS)
 
 
 def missed(found: Found) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import nlp, starts
+from satsym.solvers.search import nlp
 from satsym.solvers.search.arriving import arrived, arriving
 from satsym.solvers.search.controls import controls_of
 from satsym.solvers.search.durations import first_duration
@@ -20,7 +20,8 @@ from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.starts import planning
+from satsym.solvers.search.starts.planning import Plan
 from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
@@ -81,8 +82,8 @@ def started(
     with np.errstate(all="ignore"):
         duration = first_duration(instance, controls)
         sizes = sizes_of(instance, controls, duration)
-        plans = starts.plans(instance, controls, duration)[:STARTS]
-        plans[WEAK:WEAK] = starts.weak(instance, controls) if weak else []
+        plans = planning.plans(instance, controls, duration)[:STARTS]
+        plans[WEAK:WEAK] = planning.weak(instance, controls) if weak else []
     normed = any(norm.spot is not None for norm in controls.norms)
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
@@ -111,7 +112,7 @@ def _less_smoothed(
     known
         Costs of the first programme and the solutions they led to; the new solution is appended.
     """
-    start = starts.begun(programmes[0], plan)
+    start = planning.begun(programmes[0], plan)
     if plan.timed:
         duration = plan.scale * programmes[0].sizes.duration
         given = replace(programmes[0].instance, tf=programmes[0].instance.t0 + duration, tf_guess=None)
@@ -124,7 +125,7 @@ def _less_smoothed(
         found = arriving(programme.instance, programme.controls, programme.meshes, plan, limits)
         if not arrived(found):
             return replace(found, solved=False)
-        start = starts.carried(programme, found.programme, found.unknown)
+        start = planning.carried(programme, found.programme, found.unknown)
     if plan.loosened and (endless := programmes[0].controls.loosened) is not None:
         free = nlp.solve(replace(programmes[0], controls=endless, kinds={}), start, limits, most)
         _, v, *_ = free.programme.unpacked(free.unknown)

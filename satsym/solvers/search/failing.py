@@ -15,12 +15,13 @@ from satsym.solvers.constrained.arcs import sizes as measured
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits, Meter
-from satsym.solvers.search import coarse, nlp, starts
+from satsym.solvers.search import coarse, nlp
 from satsym.solvers.search.controls import controls_of
 from satsym.solvers.search.escaping import REMEDY, escape
 from satsym.solvers.search.nearest import nearest
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
+from satsym.solvers.search.starts import planning
 from satsym.solvers.search.transcription import FREE, Places
 from satsym.solvers.switching.linear.by_reach import unreachable
 from satsym.solvers.switching.solving import NOT_FOUND
@@ -174,7 +175,7 @@ class _Eased(Programme):
 
     def begun(self) -> Array:
         """Return unknowns of the straight line to the final state, with its violation of the path constraints."""
-        w = starts.begun(self, starts.Plan())
+        w = planning.begun(self, planning.Plan())
         y, _, _ = self._local(np.append(w, 0.0))
         n, given = self.points.states, self.controls.given
         found = measured(self.instance, y[self._time], y[:n], y[n : n + given])

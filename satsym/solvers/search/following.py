@@ -11,12 +11,13 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import nlp, starts
+from satsym.solvers.search import nlp
 from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR
 from satsym.solvers.search.mesh import UNRESOLVED, refined
 from satsym.solvers.search.motion import Motion, motion, violates
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
+from satsym.solvers.search.starts import planning
 
 Answer = TypeVar("Answer")
 
@@ -123,6 +124,6 @@ def _carried(found: Found, meshes: list[Array], smoothing: float, limits: Limits
     """Solve a programme on other meshes, starting directly from a given solution."""
     old = found.programme
     programme = Programme(old.instance, old.controls, meshes, old.sizes, smoothing, old.loose)
-    start = starts.carried(programme, old, found.unknown)
+    start = planning.carried(programme, old, found.unknown)
     one = nlp.solve(programme, start, limits, ON_FINER_MESH, near=True)
     return one if one.solved or limits.expired else nlp.solve(programme, start, limits, ITERATIONS)

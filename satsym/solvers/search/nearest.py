@@ -21,7 +21,7 @@ from satsym.solvers.search.controls import controls_of
 from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import motion
 from satsym.solvers.search.nlp import Found
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.starts.planning import Plan
 
 INTERVALS = 40
 """Number of intervals of the mesh."""

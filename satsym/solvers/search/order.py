@@ -1,6 +1,6 @@
 """The order of the search: starts one after the other, each on finer meshes, then its arcs, then Newton's method.
 
-1. A fixed list of starts (:mod:`~satsym.solvers.search.starts`) is gone through. Each is solved on a coarse mesh.
+1. A list of starts (:mod:`~satsym.solvers.search.starts.planning`) is gone through. Each is solved on a coarse mesh.
 2. The arcs of a solution are read on the coarse mesh, then on finer ones until its cost settles
    (:mod:`~satsym.solvers.search.reading`).
 3. The first arcs that Newton's method makes exact are the answer: :func:`searched`. The search ends without one after
@@ -20,12 +20,12 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
-from satsym.solvers.search import ends
 from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
 from satsym.solvers.search.following import BESIDE, LOST, finer, followed, part
 from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
+from satsym.solvers.search.starts import ends
 from satsym.solvers.search.tried import Past, Tried
 
 Answer = TypeVar("Answer")
@@ -39,7 +39,7 @@ QUIET, FURTHER, PATIENCE = 4, 6, 24
 """The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
 cost that was found. Where ends are drawn, or path constraints separate the ways, it ends after PATIENCE in a row."""
 
-SOON = 50_000
+SOON = 25_000
 """Unknowns times iterations that the list of competitors takes at least, because starts of small programmes cost
 little, and few of them may lead to the cheapest motion."""
 

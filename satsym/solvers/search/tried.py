@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from satsym.arrays import Array
-from satsym.solvers.search.starts import Plan
+from satsym.solvers.search.starts.planning import Plan
 
 Answer = TypeVar("Answer")
 

@@ -10,7 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.report.plots import legend, style
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.views import from_aside
+from satsym.report.plots.space.views import from_aside
 from satsym.report.said import say
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from satsym.arrays import Array
 from satsym.report.display import plain
 from satsym.report.plots import curves, legend, series, style
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.views import View
+from satsym.report.plots.space.views import View
 from satsym.report.results import restrictions
 from satsym.report.said import say
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.search import ends, revolutions
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import flow, followed, resting, wanted
+from satsym.solvers.search.starts import ends, revolutions
 from satsym.solvers.search.transcription import Places
 
 WITHIN = 1e2

@@ -11,7 +11,7 @@ from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
 from satsym.report import display
 from satsym.report.plots import legend, style
-from satsym.report.plots.views import View, views
+from satsym.report.plots.space.views import View, views
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.table import figure
 from satsym.status import BadInput

@@ -1,0 +1,1 @@
+"""Drawing of paths and attitudes in space: views, conic sections, attitudes, and what surrounds a path."""
