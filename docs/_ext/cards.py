@@ -53,7 +53,7 @@ def _conic(axes: Any, case: Any) -> None:
     """An orbit from where it shows best."""
     from satsym.analysis.subject import survey
     from satsym.report import display
-    from satsym.report.plots import conics, views
+    from satsym.report.plots.space import conics, views
 
     drawn = conics.Drawn.of(survey(case))
     unit = display.length_unit(v.unit for v in case.model.spec.states)
@@ -96,8 +96,9 @@ def _empty() -> Any:
 
 def _card(scene: Any) -> Any:
     """The path in space, the attitude, the path in a phase plane, or else the first state over time."""
-    from satsym.report.plots import attitudes, phase_planes, scenes, series, style
+    from satsym.report.plots import phase_planes, scenes, series, style
     from satsym.report.plots.panels import small_multiples
+    from satsym.report.plots.space import attitudes
 
     page = _empty()
     if (shown := scenes.Orbit.of(scene)) is not None:

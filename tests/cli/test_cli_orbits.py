@@ -12,7 +12,8 @@ import pytest
 from satsym import instance
 from satsym.analysis.subject import survey
 from satsym.cli import main
-from satsym.report.plots import conics, plane, style
+from satsym.report.plots import plane, style
+from satsym.report.plots.space import conics
 from satsym.report.results.linear import ANALYSIS
 from satsym.report.terminal.orbit import orbit_text
 from tests.house.test_floors import run_satsym

@@ -140,7 +140,8 @@ def test_nothing_is_cut_off_in_a_column() -> None:
     from satsym.analysis.comparison import compare
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import survey
-    from satsym.report.plots import comparison, conics, plane, responses
+    from satsym.report.plots import comparison, plane, responses
+    from satsym.report.plots.space import conics
     from satsym.report.said import spoken
 
     orbit, design = survey(instance.load("molniya")), designed(instance.load("geo-lqr"))
