@@ -27,8 +27,12 @@ TIMED = re.compile(r"(?<=\s)[\d.]+\s+m?s(?=\))")
 """What differs from run to run: how long solving took."""
 ROUNDING = re.compile(r"(?<![\d.])\d(?:\.\d+)?e-[1-9]\d\b|(?<= )(?:0|\d(?:\.\d+)?e-\d\d)(?= +1e-0\d$)", re.MULTILINE)
 """What differs from machine to machine: residuals at the level of rounding."""
-COUNTED = re.compile(r"\d+(?= iterations?,\s)")
-"""How many iterations Newton's method needed: rounding may decide whether the last one is still taken."""
+COUNTED = re.compile(
+    r"\d+(?= (?:iterations?|iterasi),\s)|(?<=none of )\d+(?= competing)|(?<=dari )\d+(?= penyelesaian)"
+    r"|(?<=seeded starts)(?: +\d+){2}(?= )"
+)
+"""How many iterations Newton's method needed, and how many starts led to an extremal: rounding may decide about the
+last iteration, and about starts that are hardly solved."""
 
 
 def settled(text: str) -> str:
@@ -84,8 +88,8 @@ def test_commands_print_what_the_readme_says_but_for_times(
     for command, printed in shown:
         assert "\n  ...\n" in printed, "what is left out is marked"
         assert cli.main(shlex.split(command)[1:]) == 0
-        told = TIMED.sub("T", capsys.readouterr().out)
-        wanted = f"{TIMED.sub('T', printed)}...\n"
+        told = settled(capsys.readouterr().out)
+        wanted = f"{settled(printed)}...\n"
         assert doctest.OutputChecker().check_output(wanted, told, ELLIPSIS), f"{command}\n{told}"
 
 
