@@ -92,3 +92,25 @@ def test_a_free_start_from_which_nothing_needs_to_be_done_is_certified() -> None
     assert found.objective == pytest.approx(0.0, abs=1e-30)
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED
+
+
+@pytest.mark.slow
+def test_a_singular_arc_may_be_left_shortly_before_the_end() -> None:
+    """The last arc lasts 0.003 of 4.7, because the singular arc misses the final velocity by little.
+
+    Ipopt, 200 steps of constant control: 0.0304586, above the least by its steps.
+    """
+    rates = {X: VX, VX: U - 0.5732 * X - 0.0907 * X**3}
+    problem = replace(_problem("spring", rates, CONTROL, (X**2 + VX**2) / 2), control_set="box")
+    found = satsym.solve(
+        satsym.Instance.of(
+            problem,
+            initial={"x": 0.2468, "vx": -0.2068},
+            final={"vx": -0.0031},
+            tf=4.7481,
+            control={"u": [-1.0, 1.0]},
+        )
+    )
+    assert 0.0304586 * (1.0 - 1e-4) < found.objective < 0.0304586
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED

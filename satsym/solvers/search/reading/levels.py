@@ -22,7 +22,7 @@ from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.recognition import LONG_ARC, Sample, guess
 from satsym.solvers.switching.magnitudes import moving
-from satsym.solvers.switching.structure import LOWER, UPPER, Course, Guess, Structure
+from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs, switched
 
 POINTS, NEAR_END, FAINT_COSTATE = 401, 1e-3, 1e-9
@@ -35,6 +35,9 @@ AT_BOUND = 0.02
 RAISED = 0.03
 """Relative amount by which switching functions are raised and lowered for further guesses. An arc on which a switching
 function exceeds its threshold only slightly may be shorter than a mesh interval and invisible on the mesh."""
+
+LAST_ARC = 1e-3
+"""Length of an arc that is added after a singular arc, relative to this arc."""
 
 CLOSE_SWITCHES = 0.02
 """Largest difference of switching times, relative to the time between the first and the last switch, at which two
@@ -110,7 +113,9 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
         yield plain
         off, rounded = _off_bounds(instance, seen)
         if off.any():
-            yield guess(instance, rounded, off)
+            singular = guess(instance, rounded, off)
+            yield singular
+            yield from _arriving(singular, instance.t0)
         for factor in (1.0 + RAISED, 1.0 - RAISED) if seen.weight.any() else ():
             yield guess(instance, replace(seen, sigma=factor * seen.sigma))
         return
@@ -156,6 +161,19 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
             if label and seen.times[last] - seen.times[first] < LONG_ARC * lasting:
                 off[row, first : last + 1] = False
     return off, replace(seen, sigma=sigma)
+
+
+def _arriving(first: Guess, t0: float) -> Iterator[Guess]:
+    """Yield guesses with an arc at a bound added after the last, singular arc of a single control.
+
+    A singular arc that misses the final state by little is left shortly before the end, by less than an interval.
+    """
+    row = first.structure.levels[0]
+    if len(first.structure.levels) == 1 and row[-1] == SINGULAR:
+        begin = float(first.times[-1]) if len(first.times) else t0
+        times = np.append(first.times, first.end - LAST_ARC * (first.end - begin))
+        for level in (LOWER, UPPER):
+            yield replace(first, structure=first.structure.with_levels(0, (*row, level)), times=times)
 
 
 def _stretches(labels: NDArray[Any]) -> list[tuple[int, int, Any]]:
