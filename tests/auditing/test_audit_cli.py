@@ -251,7 +251,7 @@ def test_what_only_the_derivation_knows_is_refused_with_its_line(audited: Run, t
     ("arguments", "reason"),
     [
         (["its_thesys"], 'did you mean "its_thesis"'),
-        (["nowhere/ledger.toml"], "no such file"),
+        (["nowhere/ledger.toml"], "neither a ledger nor a file"),
         (["its_thesis", "--item", "99.99"], 'no row "99.99"'),
     ],
 )

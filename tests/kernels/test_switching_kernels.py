@@ -197,7 +197,7 @@ def test_a_module_must_have_what_its_description_promises() -> None:
         check(without)
     with pytest.raises(Unexpected, match="does not belong there"):
         check(text.replace("    'switching': True,\n", ""))
-    with pytest.raises(Unexpected, match="no box"):
+    with pytest.raises(Unexpected, match="not in a box"):
         check(text.replace("'control_set': 'box'", "'control_set': 'free'"))
 
 

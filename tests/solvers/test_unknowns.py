@@ -256,7 +256,7 @@ def test_tables_that_do_not_fit_are_refused(given: dict[str, Any], message: str)
 def test_only_solving_takes_an_instance_that_leaves_something_free() -> None:
     case = satsym.Instance.of(EFFORT, initial={"x": "free"}, final={"x": 1.0}, tf=1.0)
     for use in (satsym.simulate, lambda one: one.repeated(compiled=False), satsym.analyse):
-        with pytest.raises(BadInput, match=r'\[initial\] x: the value of "free" is found only by solving;'):
+        with pytest.raises(BadInput, match=r'\[initial\] x: the value of "free" is found only by solving the problem;'):
             use(case)
     with pytest.raises(BadInput, match=r"\[initial\] x: the model spring has no cost that could determine this value"):
         satsym.Instance.of(CART, initial={"x": "free", "v": 0.0}, tf=1.0)

@@ -115,7 +115,7 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
         if off.any():
             singular = guess(instance, rounded, off)
             yield singular
-            yield from _arriving(singular, instance.t0)
+            yield from _ending(singular, instance.t0)
         for factor in (1.0 + RAISED, 1.0 - RAISED) if seen.weight.any() else ():
             yield guess(instance, replace(seen, sigma=factor * seen.sigma))
         return
@@ -163,17 +163,22 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
     return off, replace(seen, sigma=sigma)
 
 
-def _arriving(first: Guess, t0: float) -> Iterator[Guess]:
-    """Yield guesses with an arc at a bound added after the last, singular arc of a single control.
+def _ending(first: Guess, t0: float) -> Iterator[Guess]:
+    """Yield guesses of a single control whose singular arc ends otherwise.
 
-    A singular arc that misses the final state by little is left shortly before the end, by less than an interval.
+    One that misses the final state by little is left shortly before the end, by less than an interval. One on which the
+    control approaches its bound without reaching it lasts up to the end.
     """
     row = first.structure.levels[0]
-    if len(first.structure.levels) == 1 and row[-1] == SINGULAR:
+    if len(first.structure.levels) > 1:
+        return
+    if row[-1] == SINGULAR:
         begin = float(first.times[-1]) if len(first.times) else t0
         times = np.append(first.times, first.end - LAST_ARC * (first.end - begin))
         for level in (LOWER, UPPER):
             yield replace(first, structure=first.structure.with_levels(0, (*row, level)), times=times)
+    elif row[-2:-1] == (SINGULAR,):
+        yield replace(first, structure=first.structure.with_levels(0, row[:-1]), times=first.times[:-1])
 
 
 def _stretches(labels: NDArray[Any]) -> list[tuple[int, int, Any]]:
