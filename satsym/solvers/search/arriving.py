@@ -17,7 +17,6 @@ from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search import nlp
 from satsym.solvers.search.controls import Controls
-from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of, wanted
@@ -109,14 +108,20 @@ class Missing(Programme):
         return [(self._half, self.count, np.array([self.factor])), *rows]
 
 
-def arriving(instance: Instance, controls: Controls, meshes: Sequence[Array], plan: Plan, limits: Limits) -> Found:
+def arriving(
+    instance: Instance, controls: Controls, meshes: Sequence[Array], plan: Plan, duration: float, limits: Limits
+) -> Found:
     """Minimise the deviation from the final conditions from a given plan of a start.
 
     The start is a motion that obeys its equations, found without final conditions, unless the plan is the straight line
     to the final state. Scales of states are the larger ones of the problems with and without final conditions.
+
+    Parameters
+    ----------
+    duration
+        The duration, or its initial guess if it is free.
     """
     free = replace(instance, final={})
-    duration = first_duration(instance, controls)
     sizes, moved = (sizes_of(one, controls, duration) for one in (instance, free))
     sizes = replace(sizes, states=np.maximum(sizes.states, moved.states))
     programme = Missing(instance, controls, meshes, sizes)

@@ -122,7 +122,8 @@ def _less_smoothed(
         start = lasting.unknown
     if plan.arriving:
         programme = programmes[0]
-        found = arriving(programme.instance, programme.controls, programme.meshes, plan, limits)
+        duration = programme.sizes.duration
+        found = arriving(programme.instance, programme.controls, programme.meshes, plan, duration, limits)
         if not arrived(found):
             return replace(found, solved=False)
         start = planning.carried(programme, found.programme, found.unknown)

@@ -115,7 +115,8 @@ def _reached(instance: Instance, controls: Controls, v: Array, start: Array, goa
         first = np.minimum(first, np.where(arrived, t - instance.t0, np.inf).min(axis=1))
         grown = np.where(error < SMALLEST_ERROR, 1.3, np.where(error > LARGEST_ERROR, 0.7, 1.0))
         h = h * np.where(far, SHORTER, grown)
-        kept = ~left
+        # what is later than the last arrival cannot be a first one
+        kept = ~left & (t - instance.t0 < first[goal > 0.0].max(initial=0.0))
         x, t, h, v = x[:, kept], t[kept], h[kept], v[:, kept]
         if not len(t):
             break

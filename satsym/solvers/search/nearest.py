@@ -18,6 +18,7 @@ from satsym.instance.shown import spec_of
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search.arriving import ARRIVED, Missing, arrived, arriving, distance, missed
 from satsym.solvers.search.controls import controls_of
+from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import motion
 from satsym.solvers.search.nlp import Found
@@ -146,10 +147,12 @@ def _solved(instance: Instance, limits: Limits) -> Iterator[Found]:
     if controls is None:
         return
     mesh = np.linspace(0.0, 1.0, INTERVALS + 1)
+    with np.errstate(all="ignore"):
+        duration = first_duration(instance, controls)
     for number, plan in enumerate(PLANS, 1):
         if limits.expired:
             return
         activity.tell(f"checking whether the final state can be reached: search {number} of {len(PLANS)} ...")
         with np.errstate(all="ignore"):
-            found = arriving(instance, controls, [mesh], plan, limits)
+            found = arriving(instance, controls, [mesh], plan, duration, limits)
         yield found
