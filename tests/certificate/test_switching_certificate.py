@@ -16,9 +16,10 @@ from satsym.solvers import certificate
 from satsym.solvers.by_search import bang_bang
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.second_variation import Quadratic, units
-from satsym.solvers.certificate.switching.conditions import _terms, form_of
+from satsym.solvers.certificate.switching.conditions import _terms
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.certificate.switching.second_variation import form_of
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.trajectory import PANELS, POINTS, _panels
 from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts

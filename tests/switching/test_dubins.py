@@ -13,7 +13,7 @@ import pytest
 import sympy as sp
 
 from satsym.solvers import solve
-from satsym.status import Status, Verdict
+from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
 
@@ -86,11 +86,6 @@ def test_the_shortest_way_is_that_of_the_closed_form(
     assert f"structure {structure}," in found.message
     assert found.objective == pytest.approx(length, rel=1e-11)
     assert found.certificate is not None
-    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
     missing = {check.name for check in found.certificate.checks if not check.passed}
-    assert "no proof of a minimum along singular arcs: the problem is not convex" in missing
     # every search may lead back to the answer, as where it is a straight line
-    assert missing <= {
-        "no proof of a minimum along singular arcs: the problem is not convex",
-        "no comparison: no competitor was solved",
-    }
+    assert missing <= {"no comparison: no competitor was solved"}

@@ -16,9 +16,9 @@ from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.second_variation import units
-from satsym.solvers.certificate.switching.conditions import form_of
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.certificate.switching.second_variation import form_of
 from satsym.solvers.iteration import Limits
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of

@@ -25,9 +25,10 @@ from satsym.solvers.certificate.competitors import comparing
 from satsym.solvers.certificate.competitors.comparison import UNCOMPARED
 from satsym.solvers.certificate.reintegration.flow import typical
 from satsym.solvers.certificate.second_variation import units
-from satsym.solvers.certificate.switching.conditions import LATER, form_of
+from satsym.solvers.certificate.switching.conditions import LATER
 from satsym.solvers.certificate.switching.integration import Integration
 from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.certificate.switching.second_variation import form_of
 from satsym.solvers.iteration import Limits
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of

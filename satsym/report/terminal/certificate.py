@@ -60,6 +60,8 @@ _HOLDS = {
     "derivative of the cost with respect to the times at the waypoints": (
         "cost stationary with respect to the times at the waypoints"
     ),
+    "second variation along singular arcs": "second variation positive along singular arcs",
+    "second variation along singular and boundary arcs": "second variation positive along singular and boundary arcs",
     "second variation with respect to arc lengths and directions": "second variation positive with respect to arc "
     "lengths and directions",
     "second variation with respect to the switching times": "second variation positive with respect to the switching "
@@ -67,6 +69,8 @@ _HOLDS = {
     "second variation with fixed active arcs": "second variation positive with fixed active arcs",
     "second-order condition at the free endpoint": "second-order condition at the free endpoint holds",
     "second-order condition at the free initial point": "second-order condition at the free initial point holds",
+    "control continuous at a junction": "control jumps at the ends of singular arcs",
+    "singular control at its bound": "singular control strictly within its bounds",
     "strict bang-bang condition": "strict bang-bang condition holds",
     "switching function on singular arcs": "switching function zero on singular arcs",
     "switching function vanishes on an arc": "switching functions zero at switching times only",
@@ -100,6 +104,8 @@ _FAILS = {
         "minimum not strict: the same arcs at a later time have the same cost"
     ),
     "deviation from tangency at junctions": "tangency conditions at junctions not satisfied",
+    "control continuous at a junction": "control continuous at the end of a singular arc",
+    "singular control at its bound": "singular control reaches its bound",
     "stationarity": "control does not minimise the Hamiltonian",
     "switching function vanishes on an arc": "switching function zero within an arc",
     "width of the cost interval": "cost interval too wide",

@@ -28,6 +28,10 @@ THEOREMS = {
     "no proof of a minimum along singular arcs: the problem is not convex": (
         "convexity around the extremal (Mangasarian 1966)"
     ),
+    "second variation along singular and boundary arcs": "the strict generalised Legendre-Clebsch condition, positive "
+    "multipliers and a second variation that is positive after Goh's transformation (Aronna, Bonnans and Goh 2016)",
+    "second variation along singular arcs": "the strict generalised Legendre-Clebsch condition and a second variation "
+    "that is positive after Goh's transformation (Aronna, Bonnans, Dmitruk and Lotito 2012)",
     "second variation with respect to arc lengths and directions": "strict signs of the switching functions and a "
     "positive second variation with respect to arc lengths and directions (Chen, Caillau and Chitour 2016)",
     "second variation with fixed active arcs": "positive multipliers and a positive second variation with "

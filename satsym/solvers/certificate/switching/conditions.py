@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from satsym.arrays import Array
@@ -16,23 +14,22 @@ from satsym.solvers.certificate.competitors.searched import kinds
 from satsym.solvers.certificate.conclusion import concluded, unmeasured
 from satsym.solvers.certificate.conditions import RESIDUAL, STATIONARY
 from satsym.solvers.certificate.reintegration.flow import Flow, typical
-from satsym.solvers.certificate.second_variation import Arc, Met, Quadratic, quadratic, units
-from satsym.solvers.certificate.switching import boundaries
+from satsym.solvers.certificate.switching import boundaries, singular
 from satsym.solvers.certificate.switching.convexity import convex
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
 from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, Span, TooMuchWork
 from satsym.solvers.certificate.switching.next_switch import noise
-from satsym.solvers.certificate.switching.replay import EVALUATIONS, Piece, Replay, replay
+from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
+from satsym.solvers.certificate.switching.second_variation import curvature
 from satsym.solvers.certificate.switching.stated_arcs import UNDECIDED, decided_by_none
 from satsym.solvers.control.slopes import undecided
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits
 from satsym.solvers.search.tried import Past
-from satsym.solvers.switching.boundary import BoundaryField, off_boundary
-from satsym.solvers.switching.field import NUDGE, Field
+from satsym.solvers.switching.boundary import BoundaryField
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.structure import SINGULAR
-from satsym.solvers.switching.throttled import ThrottledField, shown_by, signs
+from satsym.solvers.switching.throttled import shown_by, signs
 from satsym.status import Verdict
 
 TIMES = 1e-9
@@ -49,19 +46,13 @@ CLOSE_TO_SWITCH = 0.01
 CURVED = 1e-7
 """Minimum relative curvature in the switching times for which the second variation counts as positive."""
 
+UNPROVED = "no proof of a minimum along singular arcs: the problem is not convex"
+IN_DIRECTIONS = "second variation with respect to arc lengths and directions"
+ALONG_SINGULAR = "second variation along singular arcs"
+"""Names of checks."""
+
 LATER = Check("not strict: the same arcs at a later time have the same cost", 1.0, 0.0)
 """Check that names a shift in time as the only reason why a second variation is not positive."""
-
-PIECES, STEPS_PER_PIECE, FEWEST_STEPS = 20, 12, 4
-"""Number of pieces, over all arcs, on which variations of the continuous controls are constant. Number of classical
-Runge-Kutta steps in each piece, and minimum number in an arc."""
-
-SHIFT = 1e-4
-"""Step of the finite difference of H_t with respect to time, as a fraction of the length of an arc."""
-
-CHANGED = 0.5
-"""Largest change of the minimum curvature, relative, when the number of pieces is doubled. With a larger change the
-second variation counts as not resolved."""
 
 
 def certify(
@@ -136,23 +127,38 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
     ]
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
-        checks.append(
-            Check(
-                "no proof of a minimum along singular arcs: the problem is not convex", float(not convex(solution)), 0.0
-            )
-        )
+        checks += _along_singular(solution, again, extended, limits)
     elif boundaries.on_boundary(again) and boundaries.jumping(again):
         checks.append(Check("not resolved: second variation where costates jump", 1.0, 0.0))
-    elif solution.instance.model.spec.throttled or not any(free):
+    elif (throttled := solution.instance.model.spec.throttled) or not any(free):
         checks += boundaries.strict(again) if boundaries.on_boundary(again) else []
-        checks += _in_times(solution, extended, limits)
+        checks += _in_times(solution, extended, limits, *([IN_DIRECTIONS] if throttled else []))
     return checks
 
 
-def _in_times(solution: Solution, extended: Replay, limits: Limits) -> list[Check]:
-    """Return checks of the second variation in junction times and, for throttled vectors, in directions."""
-    throttled = solution.instance.model.spec.throttled
-    name = f"second variation with respect to {'arc lengths and directions' if throttled else 'the switching times'}"
+def _along_singular(solution: Solution, again: Replay, extended: Replay, limits: Limits) -> list[Check]:
+    """Return checks that singular arcs are optimal: by convexity, or else by the second variation."""
+    spec, proved, bounded = solution.instance.model.spec, convex(solution), boundaries.on_boundary(again)
+    met = {piece.field.constraint for piece in again.pieces if isinstance(piece.field, BoundaryField)}
+    simple = len(met) <= 1 and all(spec.path_constraints[k].order == 1 for k in met)
+    unknown = spec.throttled or not singular.single(again) or not simple
+    if proved or unknown or (bounded and boundaries.jumping(again)):
+        return [Check(UNPROVED, float(not proved), 0.0)]
+    checks = [Check("singular control at its bound", float(not singular.inside(again) > STRICT), 0.0)]
+    if not bounded:
+        return [*checks, *_in_times(solution, extended, limits, ALONG_SINGULAR)]
+    checks.append(Check("control continuous at a junction", float(not singular.jumped(again) > STRICT), 0.0))
+    name = "second variation along singular and boundary arcs"
+    return [*checks, *boundaries.strict(again), *_in_times(solution, extended, limits, name)]
+
+
+def _in_times(
+    solution: Solution,
+    extended: Replay,
+    limits: Limits,
+    name: str = "second variation with respect to the switching times",
+) -> list[Check]:
+    """Return checks of the second variation in junction times and in the variations of controls within arcs."""
     try:
         least, form = curvature(solution, extended, Integration(np.concatenate(typical(solution)), limits))
     except TooMuchWork:
@@ -323,75 +329,3 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
         margin = np.abs(np.abs(s) - w)
         marks.append((again.times, np.where(singular[i] | (low[i] == high[i]), np.inf, margin)))
     return sizes, marks
-
-
-def curvature(solution: Solution, again: Replay, by: Integration) -> tuple[float, Quadratic]:
-    """Return the smallest eigenvalue of the second variation under the end conditions, and the form.
-
-    Parameters
-    ----------
-    solution
-        Extremal whose arcs are saturated, on boundaries, or of throttled vectors.
-    again
-        The repeated integration of the solution.
-    by
-        Integration of the arcs.
-    """
-    coarse, fine = (form_of(solution, again, by, pieces) for pieces in (PIECES, 2 * PIECES))
-    least, before = fine.curvature, coarse.curvature
-    settled = least == before or abs(least - before) <= CHANGED * abs(least)
-    return (least if settled else float("nan")), fine
-
-
-def form_of(solution: Solution, again: Replay, by: Integration, pieces: int) -> Quadratic:
-    """Return the second variation, with a given number of pieces over all arcs."""
-    state, cost = units(solution, typical(solution)[0])
-    arcs, before = list[Arc](), None
-    for piece in again.pieces:
-        on = piece.field.constraint if isinstance(piece.field, BoundaryField) else None
-        entered = on if on is not None and on != before and arcs else None
-        arcs.append(_arc(piece, entered, state, cost, pieces, by))
-        before = on
-    return quadratic(solution, arcs, state, cost)
-
-
-def _arc(piece: Piece, entered: int | None, state: Array, cost: float, pieces: int, by: Integration) -> Arc:
-    field, n, lasting = piece.field, piece.field.n, piece.end - piece.start
-    met = dict[int, Met]()
-    if entered is not None:
-        _, slopes, moved = off_boundary(field.instance, entered, piece.start, piece.before.tolist())
-        met[0] = Met(np.append(slopes[:n], moved)[None] * state)
-    share = pieces * lasting / state[-1]
-    count = int(np.ceil(share)) if isinstance(field, ThrottledField) else 0
-    steps = count * STEPS_PER_PIECE if count else max(FEWEST_STEPS, int(np.ceil(share * STEPS_PER_PIECE)))
-    times = np.linspace(piece.start, piece.end, 2 * steps + 1) if lasting else np.array([piece.start])
-    z, slopes, twice = piece.before[:, None], np.zeros((len(times), 2 * n, 2 * n + 1)), np.zeros(len(times))
-    if lasting:
-        span = Span(field, piece.start, piece.end, piece.before)
-        z = by.solved(lambda t, y: field.rates(t, y.tolist()), span, piece.before, by.sizes, t_eval=times).y
-        each = zip(times.tolist(), z.T.tolist(), strict=True)
-        slopes[:, :, :-1] = np.stack([field.linearised(t, y)[1] for t, y in each])
-        if not field.model.spec.autonomous:
-            slopes[:, :, -1] = _drift(field, times, z).T
-            before, after = (_by_time(field, times + k * SHIFT * lasting, z) for k in (-1.0, 1.0))
-            twice = (after - before) / (2.0 * SHIFT * lasting)
-    by_time = _by_time(field, times, z), twice
-    return Arc.of(times, slopes, field.along(times, z)[1], by_time, state, cost, count, met)
-
-
-def _by_time(field: Field, times: Array, z: Array) -> Array:
-    """Return the partial derivative of H with respect to explicit time, shape (N,)."""
-    if field.model.spec.autonomous:
-        return np.zeros(len(times))
-    ahead = times + 1j * NUDGE  # where a boundary moves, so does the control that keeps to it
-    u = field.controls(ahead, z.astype(complex)) if isinstance(field, BoundaryField) else field.along(times, z)[0]
-    value = field.model.hamiltonian_batch(ahead, z[: field.n], u, z[field.n :], field.p)
-    return np.asarray(np.broadcast_to(np.imag(value), times.shape) / NUDGE)
-
-
-def _drift(field: Field, times: Array, z: Array) -> Array:
-    """Return the derivatives of the rates of states and costates with respect to explicit time, shape (2n, N)."""
-    if isinstance(field, ThrottledField):
-        return np.array([field.drift(t, y) for t, y in zip(times.tolist(), z.T.tolist(), strict=True)]).T
-    ahead: tuple[Any, Any] = times + 1j * NUDGE, z.astype(complex)
-    return np.asarray(np.imag(field.along(*ahead)[1]) / NUDGE)
