@@ -36,8 +36,8 @@ RAISED = 0.03
 """Relative amount by which switching functions are raised and lowered for further guesses. An arc on which a switching
 function exceeds its threshold only slightly may be shorter than a mesh interval and invisible on the mesh."""
 
-LAST_ARC = 1e-3
-"""Length of an arc that is added after a singular arc, relative to this arc."""
+SHORT_ARC = 1e-3
+"""Length of an arc that is added before or after a singular arc, relative to this arc."""
 
 CLOSE_SWITCHES = 0.02
 """Largest difference of switching times, relative to the time between the first and the last switch, at which two
@@ -115,7 +115,7 @@ def _guesses(instance: Instance, at: Motion) -> Iterator[Guess]:
         if off.any():
             singular = guess(instance, rounded, off)
             yield singular
-            yield from _ending(singular, instance.t0)
+            yield from _otherwise(singular, instance.t0)
         for factor in (1.0 + RAISED, 1.0 - RAISED) if seen.weight.any() else ():
             yield guess(instance, replace(seen, sigma=factor * seen.sigma))
         return
@@ -163,22 +163,28 @@ def _off_bounds(instance: Instance, seen: Sample) -> tuple[NDArray[np.bool_], Sa
     return off, replace(seen, sigma=sigma)
 
 
-def _ending(first: Guess, t0: float) -> Iterator[Guess]:
-    """Yield guesses of a single control whose singular arc ends otherwise.
+def _otherwise(first: Guess, t0: float) -> Iterator[Guess]:
+    """Yield guesses of a single control whose first or last singular arc begins or ends otherwise.
 
-    One that misses the final state by little is left shortly before the end, by less than an interval. One on which the
-    control approaches its bound without reaching it lasts up to the end.
+    One that misses the initial or the final state by little begins shortly after the start or is left shortly before
+    the end, by less than an interval. One on which the control approaches its bound without reaching it takes the place
+    of the arc at this bound.
     """
-    row = first.structure.levels[0]
+    row, edges = first.structure.levels[0], np.array([t0, *first.times, first.end])
     if len(first.structure.levels) > 1:
         return
+    if row[0] == SINGULAR:
+        times = np.append(t0 + SHORT_ARC * (edges[1] - t0), first.times)
+        for level in (LOWER, UPPER):
+            yield replace(first, structure=first.structure.with_levels(0, (level, *row)), times=times)
     if row[-1] == SINGULAR:
-        begin = float(first.times[-1]) if len(first.times) else t0
-        times = np.append(first.times, first.end - LAST_ARC * (first.end - begin))
+        times = np.append(first.times, first.end - SHORT_ARC * (first.end - edges[-2]))
         for level in (LOWER, UPPER):
             yield replace(first, structure=first.structure.with_levels(0, (*row, level)), times=times)
-    elif row[-2:-1] == (SINGULAR,):
-        yield replace(first, structure=first.structure.with_levels(0, row[:-1]), times=first.times[:-1])
+    for k in range(1, len(row)):
+        if row[k - 1] == SINGULAR and row[k + 1 : k + 2] != (SINGULAR,):
+            longer = first.structure.with_levels(0, (*row[:k], *row[k + 1 :]))
+            yield replace(first, structure=longer, times=np.delete(first.times, k - 1))
 
 
 def _stretches(labels: NDArray[Any]) -> list[tuple[int, int, Any]]:
