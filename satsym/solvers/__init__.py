@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from satsym import methods
 from satsym.instance import Instance
+from satsym.instance.unknowns import Place
 from satsym.methods import Method
 from satsym.solution import Progress, Simulation, Solution
 from satsym.solvers.iteration import TimeUp, deadline_of, hurried
@@ -56,8 +57,8 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
         raise BadInput(f"{instance.called}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.called}: {refusal}")
-    if spec.in_arcs and instance.free:
-        key, beside = instance.free[0].key, "waypoints" if spec.interior else "path constraints"
+    if spec.in_arcs and (parameters := [one for one in instance.free if one.place is Place.PARAMETER]):
+        key, beside = parameters[0].key, "waypoints" if spec.interior else "path constraints"
         raise BadInput(f'{instance.called}: {key}: "free" cannot be combined with {beside}; give a number')
     found = partial(_with_free, examined=examined)
     return _solved_in_steps(instance, progress, found) if instance.continuation else found(instance, progress)
@@ -104,19 +105,33 @@ def _with_search(solver: Solver, instance: Instance, progress: Progress | None, 
     deadline = deadline_of(instance)
     solution = solver(replace(instance, work=min(QUICK, instance.work)), progress)
     solution = replace(solution, instance=replace(solution.instance, work=instance.work))
+    at_minimum = partial(_at_minimum, instance=instance, solver=solver, progress=progress)
     if solution.status.answered:
-        return by_search.cheaper(instance, solution, deadline) if examined else solution
+        return at_minimum(by_search.cheaper(instance, solution, deadline)) or solution if examined else solution
     if solution.status not in (Status.NOT_CONVERGED, Status.TIME_LIMIT):
         return solution
     left = hurried(instance, deadline)
     found = None if left is None else by_search.instead(left, progress, examined)
+    found = None if found is None else at_minimum(found)
     if found is not None:
         left = hurried(instance, deadline)
         found = found if left is None or not examined else _resolved(found, solver, left, progress)
         found = replace(_in_full(found, instance), wall_s=found.wall_s + solution.wall_s)
-        return by_search.cheaper(instance, found, deadline) if examined else found
+        return at_minimum(by_search.cheaper(instance, found, deadline)) or found if examined else found
     left = hurried(instance, deadline) if solution.status is Status.TIME_LIMIT else None
     return solution if left is None else _in_full(solver(left, progress), instance)
+
+
+def _at_minimum(found: Solution, instance: Instance, solver: Solver, progress: Progress | None) -> Solution | None:
+    """Return what a search found, solved again if the free initial states still have the values of a coarse mesh.
+
+    ``None`` if no minimum is found near these values.
+    """
+    if not instance.free or found.instance.free:
+        return found
+    again = solver(replace(instance, initial=found.instance.initial), progress)
+    again = replace(again, instance=replace(again.instance, work=instance.work))
+    return again if again.status.answered and again.objective <= found.objective else None
 
 
 def _resolved(found: Solution, solver: Solver, instance: Instance, progress: Progress | None) -> Solution:

@@ -175,7 +175,8 @@ def cheaper(stated: Instance, solution: Solution, deadline: float) -> Solution:
     began = time.perf_counter()
     instance = solution.instance if stated.free else stated
     spec = instance.model.spec
-    if not instance.free or spec.linear_quadratic or not solving.applies(instance):
+    alone = spec.linear_quadratic and not spec.in_arcs  # its one extremal is the minimum
+    if not instance.free or alone or not solving.applies(instance):
         return solution
     limits = Limits(MOST_ITERATIONS, deadline, work=COMPARED)
     least = solution.objective - CHEAPER * abs(solution.objective)

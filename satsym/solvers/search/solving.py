@@ -45,13 +45,15 @@ def applies(instance: Instance) -> bool:
     """Whether the search knows the kinds of arcs that an instance may have, and whether it may change its start."""
     spec = instance.model.spec
     plain = not (spec.chattering or instance.guess)
-    arcs = not (spec.in_arcs and (spec.throttled or instance.free))
+    arcs = not (spec.in_arcs and spec.throttled)
     timed = any(one.place is Place.TIME for one in instance.free)
     return plain and arcs and not timed and not instance.continuation
 
 
 def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     """The extremal that a motion is near, as an answer without a certificate.
+
+    With path constraints and waypoints, free initial states keep the values that they have in the motion.
 
     Where the end has limits, the instance of the answer says which of them are met, whatever is given for these.
     """
@@ -63,7 +65,7 @@ def exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
 def _exact(instance: Instance, at: Motion, limits: Limits) -> Solution | None:
     spec = instance.model.spec
     if spec.in_arcs:
-        return boundaries.exact(instance, at, limits)
+        return boundaries.exact(replace(at.instance, free=()) if instance.free else instance, at, limits)
     extremal = None if spec.switching else extremals.exact(instance, at, limits)
     if extremal is not None:
         return answered(instance, extremal)

@@ -123,7 +123,7 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
         cheaper = here.cost - final.objective > NOISE * here.size
         if not (cheaper and again):
             break
-        trials.instance = replace(instance, guess=starting_from(final).guess)
+        trials.instance, trials.last = replace(instance, guess=starting_from(final).guess), final
         moved = trials(here.at)
         here = here if moved is None else moved
     message = f"{final.message}; {trials.values(here.at)} from {trials.count}"

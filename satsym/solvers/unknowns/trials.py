@@ -13,8 +13,9 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place, Unknown
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.start import slope
+from satsym.solvers.improving import starting_from
 from satsym.solvers.iteration import hurried
-from satsym.status import Status
+from satsym.status import BadInput, Status
 from satsym.wording import counted
 
 Solver = Callable[[Instance, Progress | None], Solution]
@@ -78,6 +79,8 @@ class Trials:
         begun = hurried(found, self.deadline)
         if begun is None:
             raise Late
+        if begun.model.spec.in_arcs and self.last is not None and self.last.status.answered:
+            begun = replace(begun, guess=starting_from(self.last).guess)  # it stays on the same side of obstacles
         return replace(begun, free=())
 
     def __call__(self, at: Array) -> Trial | None:
@@ -85,8 +88,11 @@ class Trials:
         chosen = self.chosen(at)
         if chosen is None:
             return None
-        found = self.solver(chosen, self.progress)
         self.tried += 1
+        try:
+            found = self.solver(chosen, self.progress)
+        except BadInput:  # the chosen initial state violates a path constraint
+            return None
         self.iterations += found.iterations
         if found.status is Status.TIME_LIMIT:
             raise Late
