@@ -17,7 +17,7 @@ from satsym.symbolic.model import Definition, Demand, Model, Output, Problem, sy
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.pipeline import derive
 from satsym.symbolic.sets import Angle, Annulus, Ball, Box, Free
-from satsym.symbolic.signs import keep_short
+from satsym.symbolic.time_limit import keep_short
 
 __all__ = [
     "CLOCK",
