@@ -19,7 +19,7 @@ from satsym.symbolic import Derivation, DerivationError, Newton, derive, loader,
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Step
 from satsym.symbolic.lookup import library
-from satsym.symbolic.motion import central_force, points_of_orbits
+from satsym.symbolic.motion import central_force
 from tests.support.derived import derived
 
 (TWO_BODY,) = loader.load(loader.find("two_body"))
@@ -247,7 +247,7 @@ def test_a_wrong_entry_of_the_jacobian_is_noticed(derivation: Derivation, entry:
     _refused(before, central_force.gravity_gradient, tampered(before, "linearisation", entry, sp.Rational(101, 100)))
 
 
-@pytest.mark.parametrize("take", [points_of_orbits.no_equilibrium, points_of_orbits.conic], ids=lambda f: f.__name__)
+@pytest.mark.parametrize("take", [central_force.no_equilibrium, central_force.conic], ids=lambda f: f.__name__)
 def test_a_wrong_law_is_noticed_by_what_builds_on_it(
     derivation: Derivation, take: Callable[[Derivation], Step | None]
 ) -> None:
@@ -257,7 +257,7 @@ def test_a_wrong_law_is_noticed_by_what_builds_on_it(
 
 def test_a_wrong_energy_is_noticed_by_the_conic(derivation: Derivation) -> None:
     before = without(derivation, "conic")
-    _refused(before, points_of_orbits.conic, tampered(before, "conserved", "energy", 2))
+    _refused(before, central_force.conic, tampered(before, "conserved", "energy", 2))
 
 
 def test_a_wrong_strength_is_noticed(derivation: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -270,9 +270,9 @@ def test_a_wrong_strength_is_noticed(derivation: Derivation, monkeypatch: pytest
 
 def test_wrong_eigenvalues_are_noticed(derivation: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
     before = without(derivation, "point_spectrum")
-    spectrum = points_of_orbits.spectrum
-    monkeypatch.setattr(points_of_orbits, "spectrum", lambda a: spectrum(2 * a))
-    _refused(before, points_of_orbits.point_spectrum, before)
+    spectrum = central_force.spectrum
+    monkeypatch.setattr(central_force, "spectrum", lambda a: spectrum(2 * a))
+    _refused(before, central_force.point_spectrum, before)
 
 
 def test_a_jacobian_with_other_blocks_is_not_called_one_of_gravity(derivation: Derivation) -> None:

@@ -16,7 +16,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, Equation, St
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
-from satsym.symbolic.motion import central_force, geometry, points_of_orbits
+from satsym.symbolic.motion import central_force, geometry
 from satsym.symbolic.motion import steps as motion
 from satsym.wording import unlike
 
@@ -43,11 +43,11 @@ class Newton(Particle):
             central_force.central_force,
             motion.reference,
             motion.conserved,
-            points_of_orbits.conic,
+            central_force.conic,
             motion.linearisation,
             central_force.gravity_gradient,
-            points_of_orbits.no_equilibrium,
-            points_of_orbits.point_spectrum,
+            central_force.no_equilibrium,
+            central_force.point_spectrum,
         )
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
