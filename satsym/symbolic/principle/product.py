@@ -31,12 +31,17 @@ from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
 from satsym.symbolic.principle.parts import boxes_apart, limits_of, parts_of, weighed
 from satsym.symbolic.principle.path.stationary_controls import refuse_jumping
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates, numeric_gradient
-from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
 from satsym.symbolic.principle.set_laws import (
     EPSILON,
     FACTOR,
+    SCALES,
+    adds_up,
+    cheapest,
+    convex,
+    drawn,
     found,
     law_of,
+    ordered,
     problem_of,
     relaxed,
     shortened,
