@@ -213,7 +213,7 @@ def files(
 
 def recorded_text(derivation: Derivation, path: Path, folder: Path, stating: Mapping[Path, str]) -> str:
     """Return the text of a derivation's record, which audits read in place of the file that states it."""
-    from satsym.symbolic.lookup.recording import recorded
+    from satsym.symbolic.lookup.addresses import recorded
 
     return record.text_of(record.with_sources(recorded(derivation, source_of(path)), folder, stating))
 

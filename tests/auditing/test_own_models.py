@@ -13,7 +13,7 @@ from satsym.cli import main
 from satsym.records import record, shelf
 from satsym.status import BadInput
 from satsym.symbolic.lookup import library
-from satsym.symbolic.lookup.recording import recorded
+from satsym.symbolic.lookup.addresses import recorded
 from tests.support.ledgers import row, text
 
 OWN = """
