@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from satsym.auditing.latex.cursor import bar_in, listed
 from satsym.auditing.latex.letters import GREEK, Letter, is_name
@@ -15,6 +15,22 @@ from satsym.formula.tree import Call, Node, Sym
 
 _ORDERS = (Letter("O"), Letter("O", style="cal"))
 """Letters that denote an order of magnitude."""
+
+
+@dataclass(frozen=True)
+class _Bracket:
+    """The contents of a bracket behind a letter."""
+
+    inside: list[Token]
+    words: str
+    """The tokens, and their texts without braces."""
+    places: list[list[Token]]
+    letters: list[Letter | None]
+    """The parts between commas, and the letter that each consists of; ``None`` for other parts."""
+    bare: list[Letter]
+    """The letters that can be the usual arguments."""
+    fixed: bool
+    """Whether this is a point at which the letter is evaluated, as in ``x(t_f)``."""
 
 
 class PlaceCursor(LetterCursor):
@@ -73,6 +89,19 @@ class PlaceCursor(LetterCursor):
         timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
         if timed or words in (".", "cdot"):
             return ()
+        bracket = self._contents(letter, inside, words)
+        if self._is_before_power(letter, bracket):
+            self._i = begin
+            return ()
+        if not self._is_surely_taken(letter, bracket) and not self._is_shift(letter, inside):
+            if self._may_be_taken(letter, inside) or letter.style == "cal":
+                self._refuse_argument(self._found[begin].at)
+            self._i = begin
+            return ()
+        return self._read_from(letter, bracket, self._found[begin].at)
+
+    def _contents(self, letter: Letter, inside: list[Token], words: str) -> _Bracket:
+        """Return what the bracket behind a letter contains."""
         places = split(inside, lambda t: t.text in ",;")
         letters = [self._place(place) for place in places]
         bare = [at for at in letters if at and (len(places) > 1 or not at.dots)]
@@ -83,57 +112,67 @@ class PlaceCursor(LetterCursor):
             or (bool(primed) and bool(bare))
             or (len(places) == 1 and bool(bare) and bool(bare[0].index))
         )
-        number = len(inside) == 1 and inside[0].kind == "number"
-        number |= inside[-1].text == "infty" and len(inside) < 3
-        base = letters[0]
-        scalar = len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
-        factor = base == letter or (base and base.base.isupper() if letter.bold and letter.base.isupper() else scalar)
+        return _Bracket(inside, words, places, letters, bare, fixed)
+
+    def _is_before_power(self, letter: Letter, bracket: _Bracket) -> bool:
+        """Return whether a letter is a factor in front of the power of a matrix or a vector, which was just read."""
+        base = bracket.letters[0]
+        factor = base == letter or (
+            base and base.base.isupper() if letter.bold and letter.base.isupper() else _is_scalar(letter)
+        )
         matrices = base and base.bold and factor
         crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
-        if crossed or (
-            matrices and len(places) == 1 and self._is("^")
-        ):  # a factor in front of the power of a matrix or a vector
-            self._i = begin
-            return ()
+        return crossed or bool(matrices and len(bracket.places) == 1 and self._is("^"))
+
+    def _is_surely_taken(self, letter: Letter, bracket: _Bracket) -> bool:
+        """Return whether the bracket behind a letter contains arguments, without any doubt."""
+        inside = bracket.inside
+        number = len(inside) == 1 and inside[0].kind == "number"
+        number |= inside[-1].text == "infty" and len(inside) < 3
         known = self._reading.known.get(letter.name, set())
         lapse = letter.base in LAPSED | {"delta", "H", "g", "h", "G"} and _is_lapse(inside)
         varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
         lapse |= inside[0].text in varied and len(inside) > 3 and inside[1].text in "+-"  # t + Delta t
         lapse |= letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}  # the value at the next state
         argued = letter in map(Letter, ARGUED) and self._is_product(inside)
-        related = bar_in(inside) >= 0 or not relation_in(inside).bare
+        related = _is_related(inside)
         barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
         imaginary = letter.base.isupper() and inside[0].text in "ij" and [t.text for t in inside[1:2]] == ["omega"]
-        sure = bool(len(places) > 1 or bare or fixed or number or known or lapse or argued or self._is_taken(inside))
+        stated = bool(len(bracket.places) > 1 or bracket.bare or bracket.fixed or number or known or lapse or argued)
+        sure = stated or self._is_taken(inside)
         counted = inside[0].text in COUNTERS and any(said[0] == inside[0].text for said in self._all_known() if said)
-        sure |= related or imaginary or barred or (counted and _is_step(inside))
-        if not sure and not self._is_shift(letter, inside):
-            angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
-            turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
-            turned |= letter.base == "R" and angles and inside[0].text in GREEK
-            taken = self._is_product(inside) and not self._is_factor(letter, inside)
-            taken &= not (scalar and self._is("^") and letter not in map(Letter, ARGUED))
-            taken |= inside[-1].text != "T" and self._is_power(inside) and len(letter.base) + len(letter.marks) > 1
-            transformed = letter.base.isupper() and {"s"} in self._reading.known.values()
-            taken |= transformed and "s" in {t.text for t in inside} and "+" in {t.text for t in inside}
-            order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
-            divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
-            divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
-            transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
-            step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
-            step &= not any(t.text == "(" for t in inside)
-            a_place = turned or taken or order or transposed or step or divided
-            if a_place or letter.style == "cal":
-                self._refuse_argument(self._found[begin].at)
-            self._i = begin
-            return ()
-        said = words if len(bare) < len(letters) or fixed or related else ",".join(at.name for at in bare)
+        return sure or related or imaginary or barred or (counted and _is_step(inside))
+
+    def _may_be_taken(self, letter: Letter, inside: list[Token]) -> bool:
+        """Return whether the bracket behind a letter could contain an argument, though it reads as a factor."""
+        angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
+        turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
+        turned |= letter.base == "R" and angles and inside[0].text in GREEK
+        taken = self._is_product(inside) and not self._is_factor(letter, inside)
+        taken &= not (_is_scalar(letter) and self._is("^") and letter not in map(Letter, ARGUED))
+        taken |= inside[-1].text != "T" and self._is_power(inside) and len(letter.base) + len(letter.marks) > 1
+        transformed = letter.base.isupper() and {"s"} in self._reading.known.values()
+        taken |= transformed and "s" in {t.text for t in inside} and "+" in {t.text for t in inside}
+        order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
+        divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
+        divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
+        transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
+        step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
+        step &= not any(t.text == "(" for t in inside)
+        return turned or taken or order or transposed or step or divided
+
+    def _read_from(self, letter: Letter, bracket: _Bracket, at: int) -> tuple[Node, ...]:
+        """Read the arguments in a bracket, and record that the letter is printed with them."""
+        inside, bare, fixed = bracket.inside, bracket.bare, bracket.fixed
+        known, related = self._reading.known.get(letter.name, set()), _is_related(inside)
+        plain = len(bare) == len(bracket.letters) and not fixed
+        said = bracket.words if not plain or related else ",".join(at.name for at in bare)
         self._reading.places.setdefault(letter.name, set()).add(said)
-        if len(bare) == len(letters) and not fixed and known <= {said}:
+        if plain and known <= {said}:
             return ()
         if related:
-            return listed(self._condition(inside, self._found[begin].at))
-        return tuple(self._inner(place, self._found[begin].at) for place in places)
+            return listed(self._condition(inside, at))
+        return tuple(self._inner(place, at) for place in bracket.places)
 
     def _all_known(self) -> set[str]:
         """Return the arguments with which the letters of the formula are printed."""
@@ -213,6 +252,16 @@ class PlaceCursor(LetterCursor):
             inner._i = inner._script_end()
         behind = inner._peek()
         return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
+
+
+def _is_scalar(letter: Letter) -> bool:
+    """Return whether a letter is small, and usually no function."""
+    return len(letter.base) == 1 and letter.base.islower() and letter.base not in SHIFTED
+
+
+def _is_related(part: Sequence[Token]) -> bool:
+    """Return whether the tokens contain a relation or a condition."""
+    return bar_in(part) >= 0 or not relation_in(part).bare
 
 
 def _is_step(part: Sequence[Token]) -> bool:

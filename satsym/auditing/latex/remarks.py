@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
@@ -41,58 +41,97 @@ _JOINED |= {("<", "="): "le", (">", "="): "ge", ("=", ">"): REMARK}
 
 def without_remarks(found: Sequence[Token]) -> list[Token]:
     """Return the tokens without spaces, labels and alignment, with separators in place of words between formulas."""
-    kept: list[Token] = []
-    i = depth = narrow = 0
-    while i < len(found):
-        token = found[i]
-        i += 1
-        narrow = narrow + 1 if token.text in _NARROW or token.text.isspace() else 0
+    removal = _Removal(found)
+    while removal.i < len(removal.found):
+        removal.step()
+    return removal.kept
+
+
+@dataclass
+class _Removal:
+    """Removal of what is not mathematics from the tokens of a formula, from left to right."""
+
+    found: Sequence[Token]
+    """The tokens of the formula; those behind the position may be replaced."""
+    kept: list[Token] = field(default_factory=list)
+    i: int = 0
+    """Position of the next token."""
+    depth: int = 0
+    """Number of brackets that are open."""
+    narrow: int = 0
+    """Number of narrow spaces in a row."""
+
+    def step(self) -> None:
+        """Read the next token, with what belongs to it."""
+        token = self.found[self.i]
+        self.i += 1
+        self.narrow = self.narrow + 1 if token.text in _NARROW or token.text.isspace() else 0
+        steps = (self._look, self._spelled, self._group, self._skipped, self._space, self._words)
+        if not any(step(token) for step in steps):
+            self._sign(token)
+
+    def _replaced(self, tokens: Sequence[Token], behind: int) -> None:
+        """Put tokens in place of the last one and of those up to a position, and read them next."""
+        self.found = [*self.found[: self.i - 1], *tokens, *self.found[behind:]]
+        self.i -= 1
+
+    def _look(self, token: Token) -> bool:
+        """Read a macro or an empty group that only affects how formulas look; return whether the token is one."""
+        found, i = self.found, self.i
         if token.kind == "macro" and token.text in _LINED and _is_relation(found, i, token.text == "boxed"):
             end = group_end(found, i)
-            found = [*found[: i - 1], *found[i + 1 : end - 1], *found[end:]]
-            i -= 1
+            self._replaced(found[i + 1 : end - 1], end)
         elif token.kind == "macro" and token.text in UPRIGHT and _is_punctuation(found, i):
-            kept.append(found[i + 1])
-            i = group_end(found, i)
+            self.kept.append(found[i + 1])
+            self.i = group_end(found, i)
         elif (
             token.kind == "open"
             and found[i : i + 1]
             and found[i].kind == "close"
-            and _stands_empty(kept, found[i + 1 :])
+            and _stands_empty(self.kept, found[i + 1 :])
         ):
-            i += 1
+            self.i += 1
         elif token.kind == "macro" and token.text == "textcolor" and i < len(found) and found[i].kind == "open":
-            i = group_end(found, i)
+            self.i = group_end(found, i)
         elif token.kind == "macro" and token.text == "underset" and (under := _underset(found, i)):
-            found = [*found[: i - 1], *under, *found[group_end(found, group_end(found, i)) :]]
-            i -= 1
+            self._replaced(under, group_end(found, group_end(found, i)))
         elif token.kind == "macro" and token.text == "mathop" and [t.text for t in found[i : i + 2]] == ["{", "mathrm"]:
             end = group_end(found, i)
-            found = [*found[: i - 1], replace(token, text="operatorname"), *found[i + 2 : end - 1], *found[end:]]
-            i -= 1
-        elif token.kind == "macro" and token.text == "ensuremath":
-            continue
+            self._replaced([replace(token, text="operatorname"), *found[i + 2 : end - 1]], end)
         elif token.kind == "macro" and token.text == "\\" and (end := _height(found, i)):
-            kept.append(token)
-            i = end
+            self.kept.append(token)
+            self.i = end
         elif token.kind == "macro" and token.text in _OVER and (relation := _relation_under(found, i)):
-            found = [*found[: i - 1], relation, *found[group_end(found, group_end(found, i)) :]]
-            i -= 1
-        elif token.text == "&" and kept and kept[-1].text == ":" and found[i : i + 1] and found[i].text == "=":
+            self._replaced([relation], group_end(found, group_end(found, i)))
+        else:
+            return token.kind == "macro" and token.text == "ensuremath"
+        return True
+
+    def _spelled(self, token: Token) -> bool:
+        """Read what is spelled unusually: a parted sign, a word in letters, a named bracket, a text between lines."""
+        found, i, kept = self.found, self.i, self.kept
+        if token.text == "&" and kept and kept[-1].text == ":" and found[i : i + 1] and found[i].text == "=":
             kept[-1] = Token("macro", "coloneq", kept[-1].at)
-            i += 1
-        elif (end := _italic_word(found, i - 1)) and not depth and _stands_apart(found, i - 2):
+            self.i += 1
+        elif (end := _italic_word(found, i - 1)) and not self.depth and _stands_apart(found, i - 2):
             kept.append(Token("macro", REMARK, token.at))
-            i = end
+            self.i = end
         elif token.kind == "macro" and token.text in _BRACKETS:
             kept.append(Token("sign", _BRACKETS[token.text], token.at))
-            depth += 1 if token.text.startswith("l") else -1
+            self.depth += 1 if token.text.startswith("l") else -1
         elif token.kind == "macro" and token.text in ("intertext", "shortintertext") and i < len(found):
             kept.append(replace(token, text="\\"))
-            i = group_end(found, i)
-        elif token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
+            self.i = group_end(found, i)
+        else:
+            return False
+        return True
+
+    def _group(self, token: Token) -> bool:
+        """Read a group that contains a bracket or a sign and nothing else."""
+        found, i, kept = self.found, self.i, self.kept
+        if token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
             end = group_end(found, i - 1)
-            found = [*found[:i], *found[i : end - 1], *found[end:]]
+            self.found = [*found[:i], *found[i : end - 1], *found[end:]]
         elif (
             token.kind == "open"
             and i + 1 < len(found)
@@ -100,51 +139,75 @@ def without_remarks(found: Sequence[Token]) -> list[Token]:
             and found[i + 1].kind == "close"
             and not (kept and kept[-1].text in "^_")
         ):
-            kept.append(found[i])  # a sign in a group of its own
-            i += 2
-        elif token.kind == "macro" and token.text in SKIPPED_GROUPS:
+            kept.append(found[i])
+            self.i += 2
+        else:
+            return False
+        return True
+
+    def _skipped(self, token: Token) -> bool:
+        """Read a macro whose argument is skipped, or the size of a bracket."""
+        found, i = self.found, self.i
+        if token.kind == "macro" and token.text in SKIPPED_GROUPS:
             if token.text == "hspace" and not _is_narrow(found, i):  # parts equations, as a wide space does
-                kept.append(replace(token, text="quad"))
+                self.kept.append(replace(token, text="quad"))
             i += 1 if i < len(found) and found[i].text == "*" else 0
-            i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
+            self.i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
         elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
             if found[i].text == ".":  # no bracket on this side
                 bar = _bar_of(found, i)
                 if bar:  # all between them is evaluated at a point
                     inside = [Token("sign", "(", token.at), *found[i + 1 : bar], Token("sign", ")", token.at)]
-                    found = [*found[:i], *inside, *found[bar + 1 :]]
-                    i -= 1
-                i += 1
-        elif (token.kind == "macro" and (token.text in SPACES - {"quad", "qquad", " "} or token.text.isspace())) or (
-            token.text in ("~", "$")
-        ):
-            if token.text == " " or token.text.isspace():
-                kept.append(replace(token, text=" "))
-            if narrow == 3:  # together as wide as the spaces that part equations
-                while kept and (kept[-1].kind, kept[-1].text) == ("macro", " "):
-                    kept.pop()
-                kept.append(Token("macro", "quad", token.at))
-        elif token.kind == "macro" and token.text in UPRIGHT and _has_formula(found, i, kept):
-            found = [*found[: i - 1], *_apart(found, i), *found[group_end(found, i) :]]
-            i -= 1
-        elif token.kind == "macro" and token.text in UPRIGHT and _is_spoken(found, i, depth, kept):
-            i = group_end(found, i)
-            if depth and i < len(found) and found[i].text == ")":  # the bracket is one of the words
+                    self.found = [*found[:i], *inside, *found[bar + 1 :]]
+                else:
+                    self.i += 1
+        else:
+            return False
+        return True
+
+    def _space(self, token: Token) -> bool:
+        """Read a space, of which several together may be as wide as those that part equations."""
+        blank = token.kind == "macro" and (token.text in SPACES - {"quad", "qquad", " "} or token.text.isspace())
+        if not blank and token.text not in ("~", "$"):
+            return False
+        kept = self.kept
+        if token.text == " " or token.text.isspace():
+            kept.append(replace(token, text=" "))
+        if self.narrow == 3:
+            while kept and (kept[-1].kind, kept[-1].text) == ("macro", " "):
                 kept.pop()
-                i, depth = i + 1, depth - 1
+            kept.append(Token("macro", "quad", token.at))
+        return True
+
+    def _words(self, token: Token) -> bool:
+        """Read words between formulas, or a sign that stands for such words."""
+        found, i, kept = self.found, self.i, self.kept
+        if token.kind == "macro" and token.text in UPRIGHT and _has_formula(found, i, kept):
+            self._replaced(_apart(found, i), group_end(found, i))
+        elif token.kind == "macro" and token.text in UPRIGHT and _is_spoken(found, i, self.depth, kept):
+            self.i = group_end(found, i)
+            if self.depth and self.i < len(found) and found[self.i].text == ")":  # the bracket is one of the words
+                kept.pop()
+                self.i, self.depth = self.i + 1, self.depth - 1
             kept.append(replace(token, text=REMARK))
-        elif token.kind == "macro" and token.text in CONNECTIVES and not depth:
+        elif token.kind == "macro" and token.text in CONNECTIVES and not self.depth:
             if any(t.kind in ("letter", "number") for t in found[i:]):  # else nothing follows it
                 kept.append(replace(token, text=REMARK))
-            i = _behind_variable(found, i) if token.text == "forall" else i
-        elif kept and kept[-1].at == token.at - 1 and (joined := _joined(kept, token)):
+            self.i = _behind_variable(found, i) if token.text == "forall" else i
+        else:
+            return False
+        return True
+
+    def _sign(self, token: Token) -> None:
+        """Keep a token, if need be in the usual notation."""
+        kept = self.kept
+        if kept and kept[-1].at == token.at - 1 and (joined := _joined(kept, token)):
             kept[-1] = Token("macro", joined, kept[-1].at)
         elif token.kind == "macro" and token.text == "_":
             kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
         else:
-            depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
+            self.depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
             kept.append(token)
-    return kept
 
 
 def _bar_of(found: Sequence[Token], i: int) -> int:
