@@ -9,11 +9,9 @@ from pathlib import Path
 
 from satsym.auditing.check import remedies
 from satsym.auditing.check.answers import Answer, Fit, Verdict
+from satsym.auditing.check.comparing import AtOneTime, at_one_time, likeness, matrix_answer
 from satsym.auditing.check.derived import Derived, Target, is_plain, says_nothing, solved, vanishes
-from satsym.auditing.check.ends import AtOneTime, at_one_time
-from satsym.auditing.check.matrices import matrix_answer
 from satsym.auditing.check.meanings import Guess, Meanings, given_letters
-from satsym.auditing.check.nearest import likeness
 from satsym.auditing.latex.cursor import CONSTANT, Reading
 from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.letters import Letter
