@@ -5,6 +5,7 @@ Checks are made in order of their cost: all texts first, then the units, for whi
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from satsym.auditing import measurements, quantities
-from satsym.auditing.ledger import documents, indonesian, rows, schema, vocabulary
+from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.positions import Part
@@ -29,6 +30,8 @@ from satsym.wording import printable, refuse_unknown, shown, suggestion
 
 REASONS = ("because", "produced")
 TABLES = ("format", "document", "scope", "symbols", "inputs", "derived", "row")
+
+_CLAUSE = re.compile(r"[;:] ")
 
 
 def read(path: Path) -> Ledger:
@@ -114,7 +117,7 @@ class _Reader:
         found = [self._row(i, entry) for i, entry in enumerate(tables)]
         self._check_references(found)
         self._check_units(found)
-        found = indonesian.added(found, documents.beside(self._path, documents.INDONESIAN))
+        found = _with_indonesian(found, documents.beside(self._path, documents.INDONESIAN))
         tables = self._scopes, self._symbols, self._inputs
         return Ledger(self._path, name, document, *tables, tuple(found), self._model, self.folder)
 
@@ -315,3 +318,31 @@ def _input(entry: object) -> str:
         raise BadInput(f'got {shown(entry)}; write a number with its unit in quotes, such as "6378 km"')
     quantities.printed_number(entry)
     return entry
+
+
+def _with_indonesian(found: list[Row], path: Path) -> list[Row]:
+    """Return rows with their Indonesian subjects, from a flat table ``"English subject" = "Indonesian subject"``.
+
+    Rows are unchanged if the file does not exist.
+
+    Raises
+    ------
+    BadInput
+        If an entry is not a text, or no row has this subject; the message contains file and line.
+    """
+    if not path.exists():
+        return found
+    try:
+        part = Part(path, files.read(path), 0)
+    except BadInput as error:
+        raise BadInput(f"{printable(str(path), 200)}: {error}") from None
+    said = {row.table.says for row in found if row.table.says}
+    for english, text in part.tree.items():
+        place, begins = part.place("", 0, english), shown(_CLAUSE.split(english)[0])
+        if not isinstance(text, str) or not text.strip():
+            raise BadInput(f"{place}: got {shown(text)} for {begins}; write the Indonesian translation in quotes")
+        if english not in said:
+            raise BadInput(
+                f"{place}: no row has the text {begins}; copy the text of a row exactly, or remove this entry"
+            )
+    return [replace(row, says_id=part.tree.get(row.table.says, "")) for row in found]
