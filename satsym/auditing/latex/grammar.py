@@ -1,28 +1,38 @@
 r"""The grammar of printed formulas, which turns tokens into trees and refuses all other input with its position.
 
 Products may be written without a sign, arguments of functions without brackets (``\sin 2\theta``), letters as functions
-of time (``x(t)``), and derivatives as dots, quotients or partial quotients.
+of time (``x(t)``), and derivatives as dots, quotients or partial quotients. Adjacent letters are known names or
+products; ambiguous ones are refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading, bar_in
-from satsym.auditing.latex.names import capitals, refuse_powers_of_numbered, refuse_spelled_name, with_names
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.formula.tree import Call, Equality, Grid, Mul, Node, Sym, children
+from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
+from satsym.formula.tree import Call, Equality, Grid, Mul, Node, Pow, Sym, cells, children, walk
 
 _READINGS = 3
 """Number of times that a formula is read at most until it is clear which of its letters have arguments."""
+
+_LONG_WORD = 5
+"""Number of adjacent letters, including vowels, from which they are read as a word."""
+_GROUPS = frozenset("Re Fr Pr Nu Pe We Ro Kn St Bi Bo Sc Sh".split())
+"""Names of dimensionless numbers that are printed as two letters."""
+_UNITS = frozenset("rad deg kg Hz rpm mol".split())
+"""Units of several letters that hardly ever are products of these letters."""
+_SIGNS = frozenset(("cdot", "*"))
+"""Multiplication signs: an author who writes them next to adjacent letters does not mean a product of these letters."""
 
 
 def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[str] = ()) -> Reading:
@@ -102,3 +112,108 @@ def _stands_in(name: Node, tree: Node) -> bool:
     if isinstance(tree, Call) and tree.function in ("diff", "d", "value", *words.NOT_COMPARED):
         return False
     return tree == name or any(_stands_in(name, part) for part in children(tree))
+
+
+def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:
+    """Yield the positions of runs of adjacent letters, as first position and position after the last letter."""
+    begin = 0
+    for k in range(1, len(found) + 1):
+        before, token = found[k - 1], found[k] if k < len(found) else found[0]
+        if not (token.kind == before.kind == "letter" and token.at == before.at + 1):
+            if found[begin].kind == "letter" and k - begin > 1:
+                yield begin, k
+            begin = k
+
+
+def with_names(found: list[Token], names: Collection[str]) -> list[Token]:
+    """Return the tokens with letters that spell a known name set upright."""
+    for begin, end in reversed(list(_runs(found))):
+        if "".join(t.text for t in found[begin:end]) in names:
+            at = found[begin].at
+            upright = [Token("macro", "mathrm", at), Token("open", "{", at), *found[begin:end], Token("close", "}", at)]
+            found = [*found[:begin], *upright, *found[end:]]
+    return found
+
+
+def capitals(found: Sequence[Token]) -> list[str]:
+    """Return runs of adjacent capitals of which none occurs elsewhere on its own.
+
+    They are products unless they are names.
+    """
+    runs: dict[str, None] = {}
+    for begin, end in _runs(found):
+        if begin and found[begin - 1].text in ("^", "_"):  # the first one is an index in front of the others
+            continue
+        upright = begin > 1 and found[begin - 1].kind == "open" and found[begin - 2].kind == "macro"
+        letters = [t.text for t in found[begin:end]]
+        if not upright and all(letter.isupper() for letter in letters):
+            others = {t.text for k, t in enumerate(found) if t.kind == "letter" and not begin <= k < end}
+            if not others & set(letters):
+                runs["".join(letters)] = None
+    return list(runs)
+
+
+def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
+    """Refuse adjacent capitals that could be a name or a product, as in ``SO(3)`` or on the left of a definition."""
+    for part in line:
+        unit = [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS
+        if unit and part[1].at > part[0].at + len(part[0].text) + 1:  # set apart
+            raise Unread("this could be a unit or a factor; set units upright", part[1].at)
+        for first, last in _runs(part):
+            name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
+            grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
+            ends = part[first - 1].at + len(part[first - 1].text) if first else 0
+            apart = first == 0 or part[first].at > ends, not behind or behind[0].at > part[last - 1].at + 1
+            if name in _UNITS and first and part[first - 1].kind in ("number", "close"):
+                raise Unread("this could be a unit or a factor; set units upright", part[first].at)
+            if name in SAID and (len(name) == len(part) or all(apart)):
+                raise Unread("words inside a formula are not supported", part[first].at)
+            if (
+                len(name) >= _LONG_WORD
+                and name not in CONSTANT
+                and not grouped
+                and sum(letter in "aeiou" for letter in name) > 1
+            ):
+                raise Unread("words inside a formula are not supported", part[first].at)
+            called = len(name) > 2 and name[0].isupper() and name[-2:].islower() and bool(set("aeiou") & set(name))
+            called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
+            if called and behind and behind[0].text in ("(", "_"):
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+            free = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])} <= {"(", ")", ","}
+            if (name in _GROUPS and free) or (
+                name.isupper() and len(name) == len(part) and (len(name) > 2 or len(line) > 2)
+            ):
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+            numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
+            beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
+            multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
+            barred = beside == {"|"} and len(name) == 2
+            if name.isupper() and (barred or numbered or multiplied or _is_ratio(part, first, last)):
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
+    side = line[0]
+    begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
+    if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
+        name = "".join(t.text for t in side[:end])
+        raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
+
+
+def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:
+    r"""Return whether a run of capitals is divided by one with a common letter, as for lengths, ``\frac{AB}{AC}``."""
+    above, between = {t.text for t in part[first:last]}, [t.kind for t in part[last : last + 2]]
+    below = next((part[a:b] for a, b in _runs(part) if a == last + 2), [])
+    whole = first > 1 and part[first - 2].text in ("frac", "tfrac", "dfrac") and between == ["close", "open"]
+    return whole and not above.isdisjoint(t.text for t in below)
+
+
+def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
+    """Refuse powers of a letter whose superscripts 0 and 1 are indices."""
+    numbered = {name.rpartition("_upper_")[0] for name in reading.letters if name.endswith(("_upper_0", "_upper_1"))}
+    for statement in reading.statements if numbered else ():
+        for side in cells(statement):
+            if any(
+                isinstance(part, Pow) and isinstance(part.base, Sym) and part.base.name in numbered
+                for _, part in walk(side)
+            ):
+                raise Unread(
+                    "a letter that has superscript indices is also raised to a power, which is ambiguous", start
+                )
