@@ -14,9 +14,8 @@ import pytest
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.report.page import explored as shown_as
-from satsym.report.page import switching_functions
 from satsym.report.page.explore import explored
-from satsym.report.page.explored import Answer, data, shown
+from satsym.report.page.explored import Answer, data, shown, switching_functions
 from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.space.attitudes import Attitude, about, turned_by
@@ -70,14 +69,14 @@ def test_the_switching_function_stands_below_its_control_and_vanishes_where_that
 
 def test_a_switching_function_is_the_slope_of_the_hamiltonian(quickest: Solution) -> None:
     """Of a body on a line it is the costate of its velocity."""
-    (one,) = switching_functions.of(Scene.of(quickest))
+    (one,) = switching_functions(Scene.of(quickest))
     assert one.controls == (0,)
     np.testing.assert_allclose(one.values, quickest.lam[1], atol=1e-12)
 
 
 def test_controls_that_cost_a_square_have_none(returned: Solution) -> None:
     case = replace(returned.instance, lower=(-1.0, -1.0), upper=(1.0, 1.0))
-    assert switching_functions.of(Scene.of(replace(returned, instance=case))) == []
+    assert switching_functions(Scene.of(replace(returned, instance=case))) == []
 
 
 def test_nodes_at_which_a_control_jumps_are_kept_among_few(monkeypatch: pytest.MonkeyPatch, quickest: Solution) -> None:

@@ -1,4 +1,8 @@
-"""The contents of the interactive part of a page, as plain data: panels over time, and moving objects."""
+"""The contents of the interactive part of a page, as plain data: panels over time, and moving objects.
+
+Where H is linear in a control, the sign of a switching function determines at which bound the control is. Panels of
+such controls contain these functions, which are computed here.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,6 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, labelled, length_scale, number, plain, unit_text
-from satsym.report.page import switching_functions
 from satsym.report.plots import series, style
 from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
@@ -34,6 +37,22 @@ GRID = 61
 """Number of points along each axis of the grid of forbidden regions."""
 THRUST = 0.2
 """Length of the longest thrust arrow, relative to half the size of the picture."""
+
+_NAMES = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau phi chi psi omega"
+_GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξπρστφχψω", strict=True))
+_GREEK |= {"Delta": "Δ", "Omega": "Ω", "Gamma": "Γ", "Vert": "‖", "varphi": "φ", "cos": "cos", "sin": "sin"}
+_ACCENTS = {"dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}"}
+_FORMULA = re.compile(r"\$([^$]*)\$")
+_BARE = re.compile(r"\\(?:mathrm|mathbf|text)\s*\{([^{}]*)\}")
+_ACCENT = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[A-Za-z]))")
+_NAME = re.compile(r"\\([A-Za-z]+) *")
+_INDEX = re.compile(r"([_^])(?:\{([^{}]*)\}|(.))")
+_TAGS = {"_": "sub", "^": "sup"}
+
+LINEAR = 1e-9
+"""Largest deviation of H from a straight line, relative to its change, at which H counts as linear in a control."""
+STEP = 1e-6
+"""Size of test controls that show in which direction H decreases, relative to the largest norm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +146,7 @@ def _switching(scene: Scene, control: Series, kept: NDArray[np.intp]) -> list[Da
     """Return the switching function of a control, or of a norm, if it has one."""
     spec, found = scene.spec, []
     names = [v.symbol for v in spec.controls]
-    for one in switching_functions.of(scene):
+    for one in switching_functions(scene):
         alone = len(one.controls) == 1 and control.name == names[one.controls[0]]
         together = len(one.controls) > 1 and control.name.startswith("|")
         if alone or together:
@@ -136,6 +155,84 @@ def _switching(scene: Scene, control: Series, kept: NDArray[np.intp]) -> list[Da
             quantity = Series(latex, "S", unit, say("switching function"), one.values, plain_unit=True, from_zero=True)
             found.append(_panel("switching", quantity, read([quantity])[0], style.PURPLE, kept))
     return found
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchingFunction:
+    """The switching function of a control, or of a norm.
+
+    Attributes
+    ----------
+    controls
+        Places of the controls that it is about.
+    values
+        At the nodes, the slope of H: where it is negative the upper bound is best, where it is positive the lower.
+    """
+
+    controls: tuple[int, ...]
+    values: Array
+
+
+def switching_functions(scene: Scene) -> list[SwitchingFunction]:
+    """Return the switching functions of a solution: of controls bounded on both sides, and of bounded norms."""
+    if scene.lam is None:
+        return []
+    case = scene.instance
+    found = []
+    for i in range(len(scene.u)):
+        if math.isfinite(case.lower[i]) and math.isfinite(case.upper[i]) and case.lower[i] < case.upper[i]:
+            ends = [_with(scene, i, value) for value in (case.lower[i], case.upper[i])]
+            found.append(_slope(scene, (i,), ends[0], ends[1], case.upper[i] - case.lower[i]))
+    for norm in case.bounded_norms:
+        places = list(norm.places)
+        way = _downhill(scene, places, norm.upper)
+        if way is not None:
+            none, full = scene.u.copy(), scene.u.copy()
+            none[places], full[places] = norm.lower * way, norm.upper * way
+            found.append(_slope(scene, tuple(places), none, full, norm.upper - norm.lower))
+    return [one for one in found if one is not None]
+
+
+def _with(scene: Scene, i: int, value: float) -> Array:
+    u = scene.u.copy()
+    u[i] = value
+    return u
+
+
+def _slope(scene: Scene, places: tuple[int, ...], low: Array, high: Array, width: float) -> SwitchingFunction | None:
+    """Return the slope of H from one value to another, if H is linear between them."""
+    if not width > 0.0:
+        return None
+    first, middle, last = (_hamiltonian(scene, u) for u in (low, 0.5 * (low + high), high))
+    bent = np.nanmax(np.abs(middle - 0.5 * (first + last)), initial=0.0)
+    if not bent <= LINEAR * np.nanmax(np.abs(np.concatenate([first, last])), initial=1e-300):
+        return None
+    return SwitchingFunction(places, (last - first) / width)
+
+
+def _downhill(scene: Scene, places: list[int], largest: float) -> Array | None:
+    """Return the direction in which H falls most quickly from zero control, shape (k, N+1); zero without one."""
+    slopes = []
+    for i in places:
+        step = np.zeros_like(scene.u)
+        step[i] = STEP * largest
+        rest = scene.u.copy()
+        rest[places] = 0.0
+        slopes.append(_hamiltonian(scene, rest + step) - _hamiltonian(scene, rest - step))
+    gradient = np.array(slopes)
+    size = np.linalg.norm(gradient, axis=0)
+    if not (size[np.isfinite(size)] > 0.0).any():
+        return None
+    with np.errstate(all="ignore"):
+        return np.where(size > 0.0, -gradient / size, 0.0)
+
+
+def _hamiltonian(scene: Scene, u: Array) -> Array:
+    assert scene.lam is not None
+    with np.errstate(all="ignore"):
+        return np.asarray(
+            scene.instance.model.hamiltonian_batch(scene.nodes, scene.x, u, scene.lam, scene.instance.parameters)
+        )
 
 
 def _scenes(scene: Scene, kept: NDArray[np.intp]) -> list[Data]:
@@ -261,18 +358,6 @@ def _numbers(values: Array) -> list[float | None]:
 
 def _digits(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
-
-
-_NAMES = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau phi chi psi omega"
-_GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξπρστφχψω", strict=True))
-_GREEK |= {"Delta": "Δ", "Omega": "Ω", "Gamma": "Γ", "Vert": "‖", "varphi": "φ", "cos": "cos", "sin": "sin"}
-_ACCENTS = {"dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}"}
-_FORMULA = re.compile(r"\$([^$]*)\$")
-_BARE = re.compile(r"\\(?:mathrm|mathbf|text)\s*\{([^{}]*)\}")
-_ACCENT = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[A-Za-z]))")
-_NAME = re.compile(r"\\([A-Za-z]+) *")
-_INDEX = re.compile(r"([_^])(?:\{([^{}]*)\}|(.))")
-_TAGS = {"_": "sub", "^": "sup"}
 
 
 def shown(label: str) -> str:
