@@ -127,16 +127,14 @@ def _smooth_with_given_ends(task: Task) -> bool:
 
 def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     """Return extremals with smooth controls and given ends, by shooting."""
-    from satsym.solvers.batch import closed_form
-    from satsym.solvers.batch.bounded import within_bounds
+    from satsym.solvers.batch.bounded import unreachable, within_bounds
     from satsym.solvers.batch.many import Many
     from satsym.solvers.batch.newton import Outcome
-    from satsym.solvers.batch.solving import Answers, solved_together
-    from satsym.solvers.batch.unreachable import unreachable
+    from satsym.solvers.batch.solving import Answers, has_closed_form, in_closed_form, solved_together
 
     many = Many.of(task.instance, instances, task.compiled)
-    linear = closed_form.applies(many)
-    answers = Answers(closed_form.solved(many), np.zeros(many.count, dtype=bool)) if linear else solved_together(many)
+    linear = has_closed_form(many)
+    answers = Answers(in_closed_form(many), np.zeros(many.count, dtype=bool)) if linear else solved_together(many)
     nodes, n, tf = answers.nodes, many.states, float(many.times[-1, 0])
     if task.checked is Checked.LOCAL:
         nodes, fine = _confirmed(many, nodes)

@@ -236,8 +236,8 @@ def least_times(rounds: int = 3) -> Table:
 def linear(rounds: int = 3) -> Table:
     """Linear problems with given ends, without bounds."""
     from satsym import instance
-    from satsym.solvers.batch import closed_form
     from satsym.solvers.batch.many import Many
+    from satsym.solvers.batch.solving import has_closed_form, in_closed_form
     from satsym.solvers.linear import solve
 
     case, rng = instance.load("double-integrator-energy"), np.random.default_rng(3)
@@ -246,7 +246,7 @@ def linear(rounds: int = 3) -> Table:
     parts = [cases[at : at + CHUNK] for at in range(0, RETURNS, CHUNK)]
 
     def solved() -> list[Any]:
-        return [closed_form.solved(many) for part in parts if closed_form.applies(many := Many.of(case, part, False))]
+        return [in_closed_form(many) for part in parts if has_closed_form(many := Many.of(case, part, False))]
 
     answers, name = solved(), "satsym, NumPy"
     one = interleaved({name: solved}, rounds, least=0.0)[name]

@@ -12,13 +12,12 @@ from satsym import instance
 from satsym.instance import Instance
 from satsym.kernels import load
 from satsym.solvers import linear
-from satsym.solvers.batch import closed_form
 from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.corners import positive
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.motion import motion
 from satsym.solvers.batch.newton import Nodes, Outcome, transitions
-from satsym.solvers.batch.solving import solved, solved_together
+from satsym.solvers.batch.solving import has_closed_form, in_closed_form, solved, solved_together
 from satsym.solvers.by_search import collocation as solve
 from tests.certificate.test_certificate import oscillator
 
@@ -172,8 +171,8 @@ def test_linear_problems_have_a_closed_form() -> None:
     case, rng = instance.load("double-integrator-energy"), np.random.default_rng(2)
     cases = [replace(case, initial=tuple(rng.uniform(-1.0, 1.0, 2).tolist()), tf=2.0) for _ in range(12)]
     many = Many.of(cases[0], cases, False)
-    assert closed_form.applies(many)
-    nodes = closed_form.solved(many)
+    assert has_closed_form(many)
+    nodes = in_closed_form(many)
     bound = nodes.outcome == Outcome.BOUNDS
     assert 0 < bound.sum() < 12
     fine = minima(many, nodes)
@@ -186,4 +185,4 @@ def test_linear_problems_have_a_closed_form() -> None:
 
 
 def test_what_is_no_linear_problem_is_left_to_shooting() -> None:
-    assert not closed_form.applies(Many.of(returns(2)[0], returns(2), False))
+    assert not has_closed_form(Many.of(returns(2)[0], returns(2), False))

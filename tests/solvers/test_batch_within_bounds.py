@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.solvers.batch import closed_form
 from satsym.solvers.batch.bounded import within_bounds
 from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes, Outcome
-from satsym.solvers.batch.solving import solved_together
+from satsym.solvers.batch.solving import has_closed_form, in_closed_form, solved_together
 from satsym.solvers.by_search import collocation as solve
 from satsym.solvers.certificate import certify
 from satsym.status import Verdict
@@ -37,7 +36,7 @@ def returns(name: str, count: int, seed: int = 1) -> list[Instance]:
 def held(cases: list[Instance]) -> tuple[list[Instance], Many, Nodes, NDArray[np.intp]]:
     """Those of them that meet bounds, solved within these, and how often they meet or leave one."""
     many = Many.of(cases[0], cases, False)
-    nodes = closed_form.solved(many) if closed_form.applies(many) else solved_together(many).nodes
+    nodes = in_closed_form(many) if has_closed_form(many) else solved_together(many).nodes
     met = np.flatnonzero(nodes.outcome == Outcome.BOUNDS)
     return [cases[k] for k in met], *within_bounds(many.only(met), nodes.z[:, :, met])
 

@@ -13,7 +13,7 @@ from satsym import instance, solvers
 from satsym.analysis.regulator import many
 from satsym.instance import Instance
 from satsym.report import study as reports
-from satsym.solvers.batch import unreachable
+from satsym.solvers.batch import bounded as batch
 from satsym.solvers.batch.many import Many
 from satsym.solvers.switching.linear.by_reach import separating
 from satsym.status import BadInput
@@ -180,8 +180,8 @@ def test_ends_that_no_control_reaches_are_known_from_the_planes_of_others(monkey
             least.append(case.tf * (1.0 + off))
             cases.append(replace(case, initial=(least[-1] ** 2 / (2.0 + 2.0 / upper), 0.0), upper=(upper,)))
     problems, looked = Many.of(case, cases, False), []
-    monkeypatch.setattr(unreachable, "separating", lambda one: looked.append(one) or separating(one))
-    found = unreachable.unreachable(problems, cases, np.arange(len(cases)))
+    monkeypatch.setattr(batch, "separating", lambda one: looked.append(one) or separating(one))
+    found = batch.unreachable(problems, cases, np.arange(len(cases)))
     assert sorted(found) == [k for k, time in enumerate(least) if time > case.tf]
     assert len(looked) < len(cases)
     assert all("separate this final state from the reachable set" in message for message in found.values())

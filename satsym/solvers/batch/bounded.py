@@ -3,19 +3,26 @@
 Between these times the canonical equations are smooth. The right-hand side is continuous at them, so that an error of
 such a time has only a quadratic effect. The times are located along the solution of the nodes, the nodes are solved
 again on a mesh that contains these times, and both steps are repeated until the times no longer change.
+
+Linear motions may be unable to reach their final states within the bounds, as separating planes show. The search for a
+plane takes long, but to test on which side of a known plane another final state lies does not. Motions for which no
+plane is found are left open.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
 from satsym.solvers.batch.solving import aim_of
+from satsym.solvers.switching.linear.by_reach import separated_by, separating
 
 INWARDS, NARROWEST, TRIALS = 0.5, 0.02, 12
 """Parameters of the continuation in the bounds: first and smallest step, and largest number of steps.
@@ -224,3 +231,34 @@ def _separate(many: Many, z: Array) -> NDArray[np.bool_]:
     table = np.abs(np.broadcast_to(model.control_hessian_batch(t, flat[:n], u, flat[n:], p), (len(u), *u.shape)))
     off = table[~np.eye(len(u), dtype=bool)].reshape(-1, z.shape[1], many.count)
     return np.asarray((off == 0.0).all(axis=(0, 1)))
+
+
+def unreachable(many: Many, instances: Sequence[Instance], which: NDArray[np.intp]) -> dict[int, str]:
+    """Return the reasons why motions have no solution, by index, as far as this is shown.
+
+    Parameters
+    ----------
+    many, instances
+        Linear motions of one system with given final states and times.
+    which
+        Indices of the motions to be examined; planes are searched in this order.
+    """
+    found: dict[int, str] = {}
+    left = which
+    while len(left):
+        plane = separating(instances[left[0]])
+        if plane is None:
+            left = left[1:]
+            continue
+        wanted = plane.costate[:, None] * many.end[:, left]
+        beyond = plane.beyond(many.initial[:, left], wanted, many.lower[:, left], many.upper[:, left])
+        for k in left[beyond].tolist():
+            one = instances[k]
+            assert one.tf is not None
+            found[k] = (
+                f"no control within its bounds reaches the given final state in {one.tf - one.t0:.10g}: "
+                f"{separated_by(one, plane.costate)}"
+            )
+        beyond[0] = True
+        left = left[~beyond]
+    return found
