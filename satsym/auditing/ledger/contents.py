@@ -1,18 +1,30 @@
-"""The contents of a ledger: what a document prints, and what each printed item is compared with."""
+"""The contents of a ledger: what a document prints, and what each printed item is compared with.
+
+The formulas of a row are read from its table here, in the notation of the document.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
+from satsym.auditing import quantities
+from satsym.auditing.ledger import vocabulary
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
-from satsym.auditing.ledger.vocabulary import is_address
 from satsym.auditing.propositions.reading import Proposition
 from satsym.auditing.sentences import Said
-from satsym.formula.tree import Call, Equality, Formula, Node, Text, calls_in, cells, walk
+from satsym.formula import reading
+from satsym.formula.tree import Call, Equality, Formula, Node, Text, calls_in, cells, each, names_in, substituted, walk
+from satsym.formula.weight import Scales
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+FORMULAS = ("equation", "algorithm")
+"""Kinds of rows that print one formula."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +95,7 @@ class Ledger:
         trees = [side for row in self.rows for formula in (row.holds, row.follows) for side in cells(formula)]
         trees += [meaning for scope in self.scopes.values() for meaning in scope.meanings.values()]
         texts = [part.value for tree in trees for _, part in walk(tree) if isinstance(part, Text)]
-        named = (text.partition(":")[0] for text in texts if is_address(text))
+        named = (text.partition(":")[0] for text in texts if vocabulary.is_address(text))
         return tuple(dict.fromkeys(filter(None, (self.model, *named))))
 
     def uncovered(self) -> list[str]:
@@ -95,3 +107,72 @@ class Ledger:
 def row_key(call: Call) -> str:
     """Return the key of the row that ``row['item']`` or ``row['item', 'part']`` refers to."""
     return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
+
+
+def printed(table: RowTable, scope: Scope) -> Formula | None:
+    """Return the printed formula of a row; ``None`` for kinds of rows that print no formula."""
+    if table.kind == "number":
+        quantities.printed_number(_one_text(table))
+    if table.kind not in (*FORMULAS, "matrix"):
+        if not table.printed:
+            raise BadInput("missing; give the printed text")
+        return None
+    if table.kind in FORMULAS:
+        formula = reading.statement(_one_text(table))
+        _refuse_unknown(formula, scope)
+        return formula
+    if isinstance(table.printed, str) or not table.printed:
+        raise BadInput('write a list of rows, such as [["0", "1"], ["3*omega**2", "0"]]')
+    lines = [(line,) if isinstance(line, str) else line for line in table.printed]
+    if len({len(line) for line in lines}) > 1 or not lines[0]:
+        raise BadInput("all rows must have the same length")
+    entries = tuple(tuple(map(reading.expression, line)) for line in lines)
+    _refuse_unknown(entries, scope)
+    return entries
+
+
+def readable(table: RowTable, scope: Scope) -> Formula | None:
+    """Return the printed formula of a row that a proposition judges; ``None`` if the printed text is not a formula."""
+    try:
+        return printed(table, scope)
+    except BadInput:
+        return None
+
+
+def held_against(
+    table: RowTable, derived: Mapping[str, Node], own: Collection[str], inputs: Mapping[str, str]
+) -> Node | Equality:
+    """Return the formula that a row is compared with."""
+    if vocabulary.is_address(table.holds):
+        formula: Node | Equality = Text(table.holds.strip())
+    else:
+        formula = _with(reading.statement(table.holds, judging=True), derived)
+    if table.kind == "number" and quantities.is_numeric(formula):
+        quantities.check(formula, {**inputs, **table.inputs})
+    else:
+        vocabulary.check(formula, own)
+    return formula
+
+
+def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], scope: Scope) -> Node | Equality:
+    """Return the formula by which a row follows from other rows."""
+    formula = _with(reading.statement(str(table.follows), judging=True), derived)
+    _refuse_unknown(formula, scope, own)
+    return formula
+
+
+def _one_text(table: RowTable) -> str:
+    if not isinstance(table.printed, str) or not table.printed:
+        raise BadInput("write the printed expression as a single quoted string")
+    return table.printed
+
+
+def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None = None) -> None:
+    """Refuse symbols that are not in the notation of the row or, if given, among the names of derivations."""
+    for name in sorted(names_in(formula)):
+        if not scope.knows(name) and (own is None or name not in own):
+            raise BadInput(f"{shown(name)} is not a symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
+
+
+def _with(formula: Formula, derived: Mapping[str, Node]) -> Any:
+    return each(formula, lambda cell: Scales().checked(substituted(cell, derived)))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from satsym.auditing import measurements, quantities
-from satsym.auditing.ledger import documents, rows, schema, vocabulary
+from satsym.auditing.ledger import contents, documents, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.positions import Part
@@ -192,14 +192,14 @@ class _Reader:
                 raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
         found: dict[str, Any] = {}
         with self._telling("row", "printed", index, key):
-            found["printed"] = rows.printed(table, scope)
+            found["printed"] = contents.printed(table, scope)
         with self._telling("row", "inputs", index, key):
             for value in table.inputs.values():
                 _input(value)
         with self._telling("row", "holds", index, key):
-            found["holds"] = rows.held_against(table, self._derived, self._own, self._inputs)
+            found["holds"] = contents.held_against(table, self._derived, self._own, self._inputs)
         with self._telling("row", "from", index, key):
-            found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
+            found["follows"] = contents.follows(table, self._derived, self._own, scope) if table.follows else None
         return replace(row, **found, **self._explanations(index, row, scope, own=True))
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
@@ -211,7 +211,7 @@ class _Reader:
                 raise BadInput(
                     "missing; write the proposition in quotes" if not own else "missing; give the printed text"
                 )
-            row = replace(row, printed=rows.readable(table, scope) if own else None)
+            row = replace(row, printed=contents.readable(table, scope) if own else None)
         found: dict[str, Any] = {}
         for key, text in (
             ("claims", table.holds if own else table.printed),
