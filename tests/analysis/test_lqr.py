@@ -17,9 +17,8 @@ from satsym import instance
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.regulator import many, riccati
-from satsym.analysis.regulator.feedback import designed, simulate
+from satsym.analysis.regulator.feedback import designed, region_of_attraction, responses, simulate
 from satsym.analysis.regulator.lqr import flow, lqr, regulator
-from satsym.analysis.regulator.responses import region_of_attraction, responses
 from satsym.solvers import simulate as fly
 from satsym.solvers.simulation.closed_loop import Law
 from satsym.status import BadInput, Status

@@ -14,7 +14,7 @@ import sympy
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.regulator.feedback import designed
-from satsym.analysis.regulator.responses import responses as linear_and_exact
+from satsym.analysis.regulator.feedback import responses as linear_and_exact
 from satsym.analysis.subject import analyse
 from satsym.cli import main
 from satsym.report.plots import plane, responses, style, systems

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.analysis.regulator.responses import responses
+from satsym.analysis.regulator.feedback import Design, region_of_attraction, responses
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
@@ -22,8 +22,6 @@ from satsym.spec import Variable
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from satsym.analysis.regulator.feedback import Design
 
 LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
 NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 3.2}
@@ -219,8 +217,6 @@ def _draw(axes: Axes, times: Array, curve: Curve, measure: display.Scale, apart:
 
 def reach(design: Design, case: Instance) -> Figure | None:
     """Draw how far each state alone may deviate so that the exact motion returns; nothing for linear models."""
-    from satsym.analysis.regulator.responses import region_of_attraction
-
     regulator = design.regulator
     if not design.about.nonlinear or regulator.horizon is not None or not regulator.positive:
         return None
