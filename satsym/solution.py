@@ -77,6 +77,7 @@ class Kind(str, Enum):
     REVOLUTIONS = "revolutions"
     DURATIONS = "duration"
     STARTS = "seeded starts"
+    FURTHER = "further starts"  # never tried: named where those that were tried kept finding new motions
     ARCS = "structure of boundary arcs"
     TIMES = "other times at waypoints"
     ENDS = "other limits of the end"  # in results that version 0.2 saved

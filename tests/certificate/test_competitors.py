@@ -17,7 +17,7 @@ from satsym.solvers import solve
 from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.competitors.comparing import none_conceivable
-from satsym.solvers.certificate.competitors.comparison import UNCOMPARED, Compared, Comparison
+from satsym.solvers.certificate.competitors.comparison import UNCOMPARED, Compared, Comparison, unseen
 from satsym.solvers.certificate.verdict import examined
 from satsym.solvers.improving import improved, starting_from
 from satsym.solvers.search import solving
@@ -348,3 +348,29 @@ def test_starts_are_not_checked_where_a_cheaper_motion_is_unsettled(monkeypatch:
     assert seen is not None
     assert seen.verdict is Verdict.CERTIFIED
     assert Kind.STARTS in seen.not_checked
+
+
+@pytest.mark.parametrize(
+    ("costs", "share"),
+    [
+        ([1.0] * 12, 0.0),
+        ([1.0] * 10 + [2.0, 3.0], 2 / 12),
+        ([1.0, 1.0 + 5e-5] * 5 + [2.0, 3.0], 2 / 12),  # on a coarse mesh these are one motion
+        ([float(k) for k in range(1, 11)] + [float("nan")] * 5, 1.0),
+        ([float(k) for k in range(1, 10)], 0.0),  # too few to tell
+        ([-1.0, -1.0, -2.0] * 4 + [-3.0], 1 / 13),
+    ],
+)
+def test_the_share_of_motions_that_one_start_led_to_estimates_what_is_unseen(costs: list[float], share: float) -> None:
+    assert unseen(costs) == pytest.approx(share)
+
+
+def test_draws_from_a_known_distribution_are_estimated_without_bias() -> None:
+    """Of motions with known probabilities, the probability of those unseen after 40 starts is estimated on average."""
+    rng, chances = np.random.default_rng(3), np.array([0.5, 0.2, *[0.3 / 30] * 30])
+    missed, estimated = [], []
+    for _ in range(400):
+        drawn = rng.choice(len(chances), 40, p=chances)
+        missed.append(chances[np.setdiff1d(np.arange(len(chances)), drawn)].sum())
+        estimated.append(unseen((1.0 + drawn).tolist()))
+    assert np.mean(estimated) == pytest.approx(np.mean(missed), abs=0.01)

@@ -15,7 +15,7 @@ from satsym import activity
 from satsym.instance import Guess
 from satsym.instance.unknowns import Unknown
 from satsym.solution import Check, Kind, Solution
-from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed
+from satsym.solvers.certificate.competitors.comparison import SAME_COST, Compared, Comparison, summed, unseen
 from satsym.solvers.certificate.competitors.drawn import Drawn, drawable, drawn_below
 from satsym.solvers.certificate.competitors.searched import kinds, searched
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
@@ -35,6 +35,11 @@ WORK = 1_000_000
 
 SEED, DURATIONS = 20012, 12
 """``SEED`` is the seed of the random shorter durations and ``DURATIONS`` is their number."""
+
+
+UNSEEN = 0.2
+"""Estimated probability that a further start leads to a new motion, above which certificates say that such starts were
+not compared."""
 
 
 def compared(
@@ -63,6 +68,7 @@ def compared(
         costs, exact, unsettled = searched(solution, limits, past, free)
         if unhindered and not limits.late and (quicker := _shorter_costs(solution, limits)) and not limits.late:
             costs[Kind.DURATIONS] = [*costs.get(Kind.DURATIONS, []), *quicker]
+    new = unseen([cost for kind, own in costs.items() if kind is not Kind.TIMES for cost in own])
     found = dict[Kind, Compared]()
     for kind, own in costs.items():
         answered, coarse = [cost for cost in own if not np.isnan(cost)], COARSE.get(kind) if switches else None
@@ -78,6 +84,8 @@ def compared(
         found[Kind.STARTS], exact = replace(starts, enough=drawable(solution)), exact or led
     if limits.late or not (found or switches):  # nothing to compare with is said
         found |= {kind: summed(solution, kind, 0, [], limits.late) for kind in missing if kind not in found}
+    if new > UNSEEN and not (switches and linear_motion(instance) is not None):
+        missing += (Kind.FURTHER,)
     return Comparison(tuple(found[kind] for kind in possible if kind in found), missing, exact)
 
 

@@ -21,6 +21,10 @@ COST_MARGIN = 1e-9
 SAME_COST = 1e-9
 """Relative error of refined costs. Costs that differ by less count as equal."""
 
+FEW, ALIKE = 10, 1e-4
+"""Number of starts below which nothing is estimated from their costs; relative difference of costs, some of them from
+coarse meshes, up to which two motions count as the same."""
+
 UNCOMPARED = "no comparison: no competitor was solved"
 """Name of the check that fails if no competitor was solved."""
 
@@ -82,6 +86,24 @@ class Comparison:
         none = not any(kind.summary.solved or kind.interrupted or kind.enough for kind in self.kinds)
         found = [*self.proved, *(check for kind in self.kinds for check in kind.checks)]
         return [*found, Check(UNCOMPARED, 1.0, 0.0)] if self.kinds and none else found
+
+
+def unseen(costs: Sequence[float]) -> float:
+    """Return the estimated probability that a further start would lead to a motion to which none has led.
+
+    It is the share of the starts whose cost no other start has led to (Good, The population frequencies of species and
+    the estimation of population parameters, Biometrika 40, 1953); zero for fewer than ``FEW`` starts, which say little.
+
+    Parameters
+    ----------
+    costs
+        Costs to which starts have led, NaN for those that were not solved.
+    """
+    found = np.sort([cost for cost in costs if math.isfinite(cost)])
+    if len(found) < FEW:
+        return 0.0
+    apart = np.concatenate([[True], np.diff(found) > ALIKE * np.abs(found[1:]), [True]])
+    return float((apart[1:] & apart[:-1]).mean())
 
 
 def going_round(instance: Instance) -> list[Kind]:
