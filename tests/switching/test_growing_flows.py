@@ -143,7 +143,7 @@ def test_fishing_is_singular_up_to_the_end(tmp_path: Path, start: float) -> None
     assert found.objective == pytest.approx(cost, rel=1e-10)
     assert np.array(found.switching_times[0]) - start == pytest.approx(times, abs=1e-8)
     assert found.certificate is not None
-    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
+    assert found.certificate.verdict is Verdict.CERTIFIED
 
 
 @pytest.mark.slow
