@@ -15,13 +15,18 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PICTURE = ROOT / "docs" / "_static" / "architecture.svg"
 
-WIDTH, FLOOR, GAP, LEFT, MARGIN = 900, 66, 8, 640, 12
-"""Width of the picture, height of a floor, gap between floors, width of the tower, and margin, in pixels."""
-CHARACTERS, NAMES, BESIDE = 74, 62, 25
-"""Most characters of a line that says what a floor is for, of a line of names, and of a line beside the tower."""
+WIDTH, LINE, PAD, GAP, LEFT, MARGIN = 900, 18, 9, 8, 640, 12
+"""Width of the picture, height of a line, space above and below text, gap between floors, width of the tower, and
+margin, in pixels."""
+BETWEEN = 4
+"""Space between the rooms of a floor, in pixels."""
+COLUMN = 128
+"""Where in a floor the descriptions begin, in pixels: behind the longest name."""
+CHARACTERS, BESIDE = 67, 24
+"""Most characters of a line of a description, and of a line beside the tower."""
 STYLE = (
     "text{font-family:Helvetica,Arial,sans-serif;fill:#1b1b1b}"
-    ".name{font-size:16px;font-weight:bold}.about{font-size:14px}.note{font-size:14px;fill:#444}"
+    ".name{font-size:15px;font-weight:bold}.about{font-size:14px}.note{font-size:14px;fill:#444}"
 )
 FILLS = {"tower": "#dbe9f6", "side": "#fbe3cf"}
 
@@ -48,50 +53,55 @@ def purpose(room: str, root: Path = ROOT) -> str:
     folder = root / "satsym" / room
     path = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
     text = ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
-    return text.partition("\n")[0]
+    return text.partition("\n")[0].replace("``", "")
 
 
 def picture(root: Path = ROOT) -> str:
     """The picture as SVG: the floors above each other, and to the side what derives and generates."""
-    rows = floors(root)
-    height = 2 * MARGIN + len(rows) * (FLOOR + GAP) - GAP
-    lines = [
+    top, lines = MARGIN, list[str]()
+    for rooms in floors(root):
+        tall, floor = _floor(top, rooms, root)
+        lines += floor
+        top += tall + GAP
+    height = top - GAP + MARGIN
+    head = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}">',
         f"<style>{STYLE}</style>",
         f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>',
     ]
-    for k, rooms in enumerate(rows):
-        lines += _floor(MARGIN + k * (FLOOR + GAP), rooms, root)
-    lines += _sides(height, root)
-    return "\n".join([*lines, "</svg>"]) + "\n"
+    return "\n".join([*head, *lines, *_sides(root), "</svg>"]) + "\n"
 
 
-def _floor(top: int, rooms: list[str], root: Path) -> Iterator[str]:
-    """One floor: its name and what it is for; or, where it holds several rooms, their names."""
-    yield f'<rect x="{MARGIN}" y="{top}" width="{LEFT}" height="{FLOOR}" rx="5" fill="{FILLS["tower"]}"/>'
-    lines = [("name", line) for line in textwrap.wrap(", ".join(rooms), NAMES)]
-    if len(rooms) == 1:
-        lines += [("about", line) for line in textwrap.wrap(purpose(rooms[0], root), CHARACTERS)[:2]]
-    first = top + FLOOR // 2 + 5 - 9 * (len(lines) - 1)
-    for k, (kind, line) in enumerate(lines):
-        at = first + 18 * k
-        yield f'<text class="{kind}" x="{MARGIN + 10}" y="{at}">{escape(line)}</text>'
+def _floor(top: int, rooms: list[str], root: Path) -> tuple[int, list[str]]:
+    """The height of a floor, and its rooms: for each one its name and what it is for."""
+    texts, at = list[str](), top + PAD + LINE - 4
+    for room in rooms:
+        texts.append(f'<text class="name" x="{MARGIN + 10}" y="{at}">{escape(room)}</text>')
+        for line in textwrap.wrap(purpose(room, root), CHARACTERS):
+            texts.append(f'<text class="about" x="{MARGIN + COLUMN}" y="{at}">{escape(line)}</text>')
+            at += LINE
+        at += BETWEEN
+    tall = at - BETWEEN - (top + PAD + LINE - 4) + 2 * PAD
+    box = f'<rect x="{MARGIN}" y="{top}" width="{LEFT}" height="{tall}" rx="5" fill="{FILLS["tower"]}"/>'
+    return tall, [box, *texts]
 
 
-def _sides(height: int, root: Path) -> Iterator[str]:
+def _sides(root: Path) -> Iterator[str]:
     """What stands beside the tower, with who may call it."""
-    left, wide, tall = MARGIN + LEFT + 24, WIDTH - LEFT - 2 * MARGIN - 24, (height - 2 * MARGIN - GAP) // 2
-    for k, room in enumerate(("codegen", "symbolic")):
-        top = MARGIN + k * (tall + GAP)
-        yield f'<rect x="{left}" y="{top}" width="{wide}" height="{tall}" rx="5" fill="{FILLS["side"]}"/>'
-        yield f'<text class="name" x="{left + 10}" y="{top + 22}">{room}</text>'
+    left, wide, top = MARGIN + LEFT + 24, WIDTH - LEFT - 2 * MARGIN - 24, MARGIN
+    for room in ("codegen", "symbolic"):
         lines = textwrap.wrap(purpose(room, root), BESIDE)
-        for j, line in enumerate(lines):
-            yield f'<text class="about" x="{left + 10}" y="{top + 44 + 17 * j}">{escape(line)}</text>'
         called = textwrap.wrap("called by " + ", ".join(callers(room, root)) + " only", BESIDE)
-        for j, line in enumerate(called):
-            at = top + 58 + 17 * (len(lines) + j)
-            yield f'<text class="note" x="{left + 10}" y="{at}">{escape(line)}</text>'
+        tall = 2 * PAD + (len(lines) + len(called) + 1) * LINE + 14
+        yield f'<rect x="{left}" y="{top}" width="{wide}" height="{tall}" rx="5" fill="{FILLS["side"]}"/>'
+        at = top + PAD + LINE - 4
+        yield f'<text class="name" x="{left + 10}" y="{at}">{room}</text>'
+        for kind, part, space in (("about", lines, 4), ("note", called, 10)):
+            at += space
+            for line in part:
+                at += LINE
+                yield f'<text class="{kind}" x="{left + 10}" y="{at}">{escape(line)}</text>'
+        top += tall + GAP
 
 
 if __name__ == "__main__":
