@@ -1,7 +1,8 @@
-"""What the theme leaves out for people who hear a page or have no mouse."""
+"""What the theme leaves out for people who hear a page or have no mouse, and what it breaks that belongs together."""
 
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.application import Sphinx
 
 PUT_RIGHT = {
@@ -12,16 +13,31 @@ PUT_RIGHT = {
     '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
 }
 
+SHORT = 32
+"""Most letters of a piece of code that stays on one line."""
+
 
 def _put_right(app: Sphinx, failed: Exception | None) -> None:
-    for path in Path(app.outdir).rglob("*.html") if failed is None else ():
+    pages = (path for path in Path(app.outdir).rglob("*.html") if "_static" not in path.parts)
+    for path in pages if failed is None else ():
         text = path.read_text(encoding="utf-8")
         for before, after in PUT_RIGHT.items():
             text = text.replace(before, after)
         path.write_text(text, encoding="utf-8")
 
 
+def _set(app: Sphinx, page: nodes.document, name: str) -> None:
+    """Keep short code on one line, so that options do not break at their hyphens, and typeset dashes."""
+    for code in page.findall(nodes.literal):
+        if len(code.astext()) <= SHORT:
+            code["classes"].append("short")
+    for text in list(page.findall(nodes.Text)):
+        if text.astext() == " -- ":  # before what autodoc says of a parameter
+            text.parent.replace(text, nodes.Text(" \N{EN DASH} "))
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the extension with Sphinx."""
+    app.connect("doctree-resolved", _set)
     app.connect("build-finished", _put_right)
     return {"parallel_read_safe": True}

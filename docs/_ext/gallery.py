@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from html import escape
+from importlib.util import find_spec
 from itertools import chain, compress
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,6 +21,7 @@ from typing import Any
 
 import cards
 from sphinx.application import Sphinx
+from statements import about, statement
 
 from satsym.report.display import raised
 
@@ -43,20 +45,23 @@ LONGEST = (
     "goddard-pressure transfer-fuel obstacle goddard shuttle"
 ).split()
 """Begun first, so that no processor waits for another in the end."""
-WHOLE = 104
-"""Signs beyond which an equation is left to the derivation, a macro counting as one; a page has room for these."""
-EQUATIONS = 12
-"""Equations beyond which all are left to the derivation."""
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
 OWN = hashlib.blake2b(b"".join(Path(one).read_bytes() for one in (__file__, cards.__file__))).hexdigest()
 """Digest of what writes the pages."""
+EXPLORED = ("transfer-fuel",)
+"""Instances with an interactive page in addition, where plotly is installed; such a page is large."""
 DRAWN = "--format svg --size page --no-title".split()
+UNCONTROLLED = "The uncontrolled motion; no admissible control was found that reaches the final state."
+EXPLORE = (
+    "<a href='../_static/gallery/{}.html#explore'>Open the interactive page</a> of this example: a slider for the "
+    "time, the values at the pointer, and the motion in space."
+)
 KEPT = "SATSYM_DOCS_KEPT"
 """Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
-COLUMNS = 86
+COLUMNS = 96
 """Letters of a line of code on a page."""
-SIGNS = re.compile(r"\\(?:[a-zA-Z]+|.)|[{}^_\s]+")
-"""Macros, and what LaTeX needs besides the signs of a formula."""
+BEHIND = re.compile(r"((?:[^#\"]|\"[^\"]*\")+)(# .*)")
+"""What a line of a file says, and the comment behind it."""
 TAKEN = re.compile(r",\s+[\d.]+\s+m?s(?=\))")
 """How long solving took, which is another time each time."""
 
@@ -74,6 +79,8 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
     case = instance.load(name)
     command = command_of(name, case.model.spec.has_cost)
     key = f"{command} {source_files.digest(list(CODE))} {OWN} {source_files.digest_of(case.path)}"
+    explored = name in EXPLORED and explorable()
+    key += " interactive" if explored else ""
     said = folder / f"{name}.json"
     if said.is_file():
         known = json.loads(said.read_text("utf-8"))
@@ -84,6 +91,12 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
         text = printed([command, name, "--out", out, *(() if motion else ("--plot", *DRAWN))])
         pictures = cards.of_motion(case, Path(out)) if motion else cards.written(case, Path(out))
         result = json.loads(Path(out, "result.json").read_text("utf-8"))
+        uncontrolled = motion and not pictures
+        if uncontrolled:  # the picture shows what makes a solution impossible
+            printed(["simulate", name, "--out", out])
+            pictures = cards.of_motion(case, Path(out))
+    if explored:
+        printed(["report", name, "--interactive", "--html", str(folder / f"{name}.html")])
     for part, svg in pictures.items():
         (folder / f"{name}{part}.svg").write_text(themed(svg), "utf-8")
     known = {
@@ -97,6 +110,8 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
         "verdict": verdict(result),
         "file": case.path.read_text("utf-8").strip(),
         "pictures": [part for part in pictures if part != cards.CARD],
+        "uncontrolled": uncontrolled,
+        "explored": explored,
     }
     said.write_text(json.dumps(known), "utf-8")
     return known
@@ -110,6 +125,11 @@ def printed(arguments: list[str]) -> str:
     with redirect_stdout(io.StringIO()) as stream, redirect_stderr(io.StringIO()):  # progress would look like a warning
         cli.main(arguments)
     return TAKEN.sub("", stream.getvalue().partition("\n  written to ")[0]).rstrip()
+
+
+def explorable() -> bool:
+    """Whether interactive pages can be written."""
+    return find_spec("plotly") is not None
 
 
 def verdict(result: dict) -> str:
@@ -131,36 +151,22 @@ def themed(svg: str) -> str:
     return f"{element}><style>{colours}svg {{ fill: var(--ink); }}</style>{inside}"
 
 
-def equations(model: str, generated: Path) -> list[str]:
-    """Motion, cost and constraints of a model, from its typeset derivation; empty if they are long or many."""
-    path = generated / f"{model}.tex"
-    if not path.is_file():
-        return []
-    label = rf"\\label\{{{model}:(first_order|declared)\.([\w.]+)\}}"
-    found = re.findall(rf"^\s*(.*?) {label}", path.read_text("utf-8"), re.MULTILINE)
-    kept = [
-        tex.replace("&", "").strip()
-        for tex, step, name in found
-        if step == "first_order" or not re.match(r"directions|position|forces|reference|outputs|bodies|frames", name)
-    ]
-    short = [tex for tex in kept if len(SIGNS.sub(".", tex)) <= WHOLE]
-    return short if len(short) == len(kept) <= EQUATIONS else []
-
-
 def page(known: dict[str, Any], root: Path) -> str:
     """The page of one instance."""
+    from satsym import instance
+
     name, model = known["name"], known["model"]
-    motion = "\n\n".join(f"$$\n{tex}\n$$" for tex in equations(model, root / "generated"))
-    motion = f"{motion}\n\n" if motion else "The equations are long; they are in the derivation below.\n\n"
+    case = instance.load(name)
+    stated = statement(case, known["command"], root / "generated")
     alone = "--lang id" if known["command"] in ("lqr", "analyse", "compare") else "--json"
     python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
     call = python.get(known["command"], "found = satsym.analyse")
     code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
     parts = [
-        f"---\norphan: true\n---\n\n{WRITTEN}# {raised(known['title'])}\n",
+        f"---\norphan: true\n---\n\n{WRITTEN}# {titled(known)}\n",
         "Back to the [gallery](../gallery.md).\n",
         *(f"{picture(known, part)}\n" for part in known["pictures"]),
-        f"## Problem\n\n{about(root / known['source'])}\n\n{motion}{quantities(name)}",
+        f"## Problem\n\n{about(root / known['source'])}\n\n{stated}{quantities(case)}",
         f"The instance `{name}` provides the numerical values:\n\n```toml\n{narrow(known['file'])}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
@@ -180,22 +186,23 @@ def narrow(text: str) -> str:
             lines[-1] += f" {line[1:].strip()}"
         else:
             lines.append(line)
-    broken = (
-        wrap(line, COLUMNS, subsequent_indent="#   " if line.startswith("# - ") else "# ")
-        if line.startswith("# ")
-        else [line]
-        for line in lines
-    )
-    return "\n".join(chain.from_iterable(broken))
+    return "\n".join(chain.from_iterable(map(broken, lines)))
 
 
-def quantities(name: str) -> str:
+def broken(line: str) -> list[str]:
+    """The lines that a line of a file becomes: a comment behind what has no room for it goes before that."""
+    if line.startswith("# "):
+        return wrap(line, COLUMNS, subsequent_indent="#   " if line.startswith("# - ") else "# ")
+    if len(line) > COLUMNS and (behind := BEHIND.match(line)):
+        return [*wrap(behind[2], COLUMNS, subsequent_indent="# "), behind[1].rstrip()]
+    return [line]
+
+
+def quantities(case: Any) -> str:
     """A table of the states, controls and parameters of an instance, without empty columns."""
-    from satsym import instance
     from satsym.instance.shown import spec_of
     from satsym.report.display import number, unit_text
 
-    case = instance.load(name)
     spec = spec_of(case)
     stated = [(v, role, "") for role, found in (("state", spec.states), ("control", spec.controls)) for v in found]
     given = zip(spec.parameters, case.parameters, strict=True)
@@ -206,25 +213,24 @@ def quantities(name: str) -> str:
     return "\n".join(f"| {' | '.join(compress(line, kept))} |" for line in lines) + "\n\n"
 
 
-def about(source: Path) -> str:
-    """What a derivation file says of itself, as Markdown."""
-    import ast
-
-    said = ast.get_docstring(ast.parse(source.read_text("utf-8"))) or ""
-    return re.sub(r"([*_<\[\]])", r"\\\1", said)
+def titled(known: dict[str, Any]) -> str:
+    """The title of an instance, with the signs that it has in print."""
+    return raised(known["title"]).replace("<=", "≤").replace(">=", "≥")
 
 
 def picture(known: dict[str, Any], part: str) -> str:
     """The element that shows one of its pictures."""
-    name, title = known["name"], escape(raised(known["title"]))
-    said = f"Picture of {title}" if len(known["pictures"]) == 1 else f"{part[1:].capitalize()}: {title}"
+    name, title = known["name"], escape(titled(known))
+    said = f"Picture of {title}" if not part else f"{part[1:].capitalize()}: {title}"
     image = f"<img src='../_static/gallery/{name}{part}.svg' alt='{said}' loading='lazy'>"
-    return f"```{{raw}} html\n<figure class='example'>{image}</figure>\n```\n"
+    words = UNCONTROLLED if known["uncontrolled"] else EXPLORE.format(name) if known["explored"] else ""
+    caption = f"<figcaption>{words}</figcaption>" if words else ""
+    return f"```{{raw}} html\n<figure class='example'>{image}{caption}</figure>\n```\n"
 
 
 def card(known: dict[str, Any]) -> str:
     """An example in the overview."""
-    name, title = known["name"], escape(raised(known["title"]))
+    name, title = known["name"], escape(titled(known))
     image = f"<img src='_static/gallery/{name}{cards.CARD}.svg' alt='' loading='lazy'>" if known["pictures"] else ""
     return (
         f"<figure><a href='gallery/{name}.html'>{image}<figcaption>{title}</figcaption></a>"
@@ -251,6 +257,8 @@ def begin(app: Sphinx, work: Any) -> None:
     folder, pages = source / "_static" / "gallery", source / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
     pages.mkdir(exist_ok=True)
+    if explorable():
+        app.tags.add("interactive")  # for the front page
     names = sorted(instance.shipped(), key=lambda name: LONGEST.index(name) if name in LONGEST else len(LONGEST))
 
     def done(found: list[dict[str, Any]]) -> None:
