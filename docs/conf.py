@@ -28,6 +28,8 @@ nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # docstrings name what has no page here
 python_use_unqualified_type_names = True
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+autodoc_typehints_format = "short"
 toc_object_entries_show_parents = "hide"
 # links into the repository, from pages that are read there as well
 myst_url_schemes = ["http", "https"]

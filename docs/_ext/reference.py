@@ -2,8 +2,10 @@
 
 import inspect
 import os
+import re
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import click
 from sphinx.application import Sphinx
@@ -75,7 +77,16 @@ def _write(app: Sphinx) -> None:
             path.write_text(text, encoding="utf-8")
 
 
+def _legible(app: Sphinx, what: str, name: str, value: object, options: object, signature: Any, returns: Any) -> Any:
+    """A signature without the modules of types, and with empty mappings where dataclasses make them."""
+    if not signature:
+        return None
+    legible = re.sub(r"~(?:\w+\.)+", "", signature).replace("<factory>", "{}")
+    return legible.replace("lambda _: ...", "lambda _: None"), returns
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the extension with Sphinx."""
+    app.connect("autodoc-process-signature", _legible)
     app.connect("builder-inited", _write)
     return {"parallel_read_safe": True}

@@ -89,10 +89,23 @@ class Instance:
         model
             A shipped name, a generated file as ``"DIR/NAME"``, or a problem (or model), which is derived and generated
             in memory, once.
-        initial, final, parameters, control
-            The tables of these names.
-        tf, t0, tf_guess, t0_guess
-            The table [time]: final and initial time, or ``"free"``; initial guesses of free times.
+        initial
+            Initial value of each state, as in the table ``[initial]`` of an instance file; ``"free"`` if the value is
+            to be found.
+        tf
+            Final time in the unit of the model, a text such as ``"1 day"``, or ``"free"``.
+        final
+            Required final values of states, or ranges ``(lower, upper)``; states that are left out are free.
+        t0
+            Initial time, or ``"free"``; zero by default.
+        tf_guess
+            Initial guess of a free final time.
+        t0_guess
+            Initial guess of a free initial time.
+        parameters
+            Values of parameters that replace the defaults of the model.
+        control
+            Bounds ``(lower, upper)`` of each control, or ``max_norm`` for a bound on the norm.
         name
             Name of the instance in results; by default that of the model.
         more
@@ -108,7 +121,12 @@ class Instance:
         --------
         ::
 
-            Instance.of("polar_orbit", initial={"r": 1.1, "r_dot": 0, "theta": "5 deg", "theta_dot": 0.9}, tf=6.28)
+            Instance.of(
+                "polar_orbit",
+                initial={"r": 1.1, "r_dot": 0, "theta": "5 deg", "theta_dot": 0.9},
+                final={"r": 1, "r_dot": 0},
+                tf=6.28,
+            )
         """
         kernels, called = _kernels(model), _called(model)
         given = {"initial": initial, "final": final, "parameters": parameters, "control": control}

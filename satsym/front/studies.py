@@ -99,11 +99,26 @@ def study(
     vary
         A grid: for each key, the lowest value, the highest value and the number of values, ``(0.9, 1.1, 50)``,
         or a text such as ``"log:1:100:20"``.
-    normal, uniform
-        Distributions from which `sample` cases are drawn: for each key, the mean and the standard deviation, or the two
-        ends of the interval.
-    sample, method, seed, command, certificate, feedback, trajectories
-        As in the table ``[study]`` of the instance, which they override; see ``docs/instances.md``.
+    normal
+        Normal distributions of a random sample: for each key, the mean and the standard deviation.
+    uniform
+        Uniform distributions of a random sample: for each key, the lower and the upper end of the interval.
+    sample
+        Number of cases that are drawn at random, in place of a grid. This and the next five override the table
+        ``[study]`` of the instance.
+    method
+        Sampling method: ``"sobol"``, the default, ``"lhs"`` (Latin hypercubes) or ``"random"``.
+    seed
+        Seed of the sampling; zero by default.
+    command
+        What is computed for each case: ``"solve"``, the default, ``"simulate"`` or ``"lqr"``.
+    certificate
+        How solutions are certified: ``"local"``, the default, computes no competing solutions; ``"full"`` does;
+        ``"sample"`` does so for one case in a hundred; ``"none"`` certifies nothing.
+    feedback
+        Control law of simulations, as for ``satsym simulate --feedback``.
+    trajectories
+        Whether to save the trajectories as well.
     table
         Format of the table: ``"csv"``, the default, or ``"parquet"``, which needs pyarrow (extra ``table``).
     resume
