@@ -37,7 +37,7 @@ Put the formula in single quotes, so that the shell does not change its backslas
 @click.option("--free", is_flag=True, help="The formula describes the uncontrolled motion.")
 @json_option
 def check(formula: str, model: str, let: tuple[str, ...], free: bool, as_json: bool) -> ExitCode:
-    """Check whether a printed formula is right, and say what is wrong with it.
+    """Check a printed formula, and name what is wrong with it.
 
     FORMULA is LaTeX or plain notation. The formula is compared with every equation that satsym derives for the model,
     in any rearrangement. Letters that the model does not have are guessed, and the guess is printed; --let corrects

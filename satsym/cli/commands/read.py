@@ -33,11 +33,12 @@ Examples:
 @place_option("--out", metavar="LEDGER", help="Write the ledger to this file, not to the directory of the document.")
 @json_option
 def read(document: Path, model: str, let: tuple[str, ...], out: Path | None, as_json: bool) -> ExitCode:
-    """Draft a ledger of a document. The ledger lists the displayed formulas, and what each is to be checked against.
+    """List the formulas of a document in a file for the audit.
 
-    FILE is LaTeX, or Markdown with $$. Each equation becomes a row with a proposed address in the model; you confirm
-    a row by deleting its line `draft = true`. If the document is read again, confirmed rows are kept. Formulas that
-    cannot be read are listed with their positions.
+    FILE is LaTeX, or Markdown with $$. The file that is written, a ledger, lists the displayed formulas and what each
+    is to be checked against: each equation becomes a row with a proposed address in the model. You confirm a row by
+    deleting its line `draft = true`. If the document is read again, confirmed rows are kept. Formulas that cannot be
+    read are listed with their positions.
     """
     from satsym.auditing.document import drafting
     from satsym.report.results.files import write_text

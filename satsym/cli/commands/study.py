@@ -93,7 +93,7 @@ def study(
     values: tuple[str, ...],
     **options: Any,
 ) -> ExitCode:
-    """Solve or simulate many variants of an instance, or design their regulators.
+    """Solve, simulate or regulate many variants of an instance.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The table has one row for each
     case, that is, for each combination of values; it contains the results or the reason why there are none. An
