@@ -47,12 +47,12 @@ def conjugate(page: Any, style: Any) -> None:
 
 
 def constraint(page: Any, style: Any) -> None:
-    """The problem of Bryson and Denham for three bounds: not met, touched, and followed."""
+    """The problem of Bryson and Denham for three bounds: not reached, touched, and followed."""
     import satsym
 
     case, place = satsym.load("bryson-denham"), page.subplots()
     for bound, colour, name in (
-        (0.3, style.GREEN, "not met"),
+        (0.3, style.GREEN, "not reached"),
         (0.2, style.BLUE, "touched"),
         (1 / 9, style.VERMILION, "followed"),
     ):
