@@ -178,30 +178,40 @@ def _found(instance: Instance, progress: Progress | None, examined: bool = True)
         return replace(nothing, status=Status.INFEASIBLE, message=why)
     solution = _by_method(less.instance, progress, examined)
     if not less.met(solution) and not instance.model.spec.switching:
-        again = _by_method(less.towards, progress, examined)
+        again = _by_method(less.towards, progress, examined, instance)
         solution = again if again.status.answered else solution
     if solution.status.answered and not less.met(solution):
-        less, solution = _beside(less, solution, progress, examined)
+        less, solution = _beside(less, solution, progress, examined, instance)
     if not solution.status.answered or less.met(solution):
         return replace(solution, message=f"{solution.message}; {less.note}")
     nothing = iteration.unsolved(instance, solution.method, solution.wall_s)
     return replace(nothing, status=Status.NOT_CONVERGED, message=less.missed(solution))
 
 
-def _beside(less: Redundant, found: Solution, progress: Progress | None, examined: bool) -> tuple[Redundant, Solution]:
+def _beside(
+    less: Redundant, found: Solution, progress: Progress | None, examined: bool, asked: Instance
+) -> tuple[Redundant, Solution]:
     """Return the solution with another final state left out that ends as required; otherwise the given solution."""
     for other in less.others:
-        solution = _by_method(other.instance, progress, examined)
+        solution = _by_method(other.instance, progress, examined, asked)
         if other.met(solution):
             return other, solution
     return less, found
 
 
-def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
-    """Solve an instance by its method or, if that fails, by multiple shooting or the sweep in the remaining time."""
+def _by_method(
+    instance: Instance, progress: Progress | None, examined: bool, asked: Instance | None = None
+) -> Solution:
+    """Solve an instance by its method or, if that fails, by multiple shooting or the sweep in the remaining time.
+
+    Parameters
+    ----------
+    asked
+        The problem whose conditions competitors have to meet, if it has more final conditions than the instance.
+    """
     method, deadline = _named(instance), deadline_of(instance)
     automatic = instance.solver.method == methods.AUTO
-    solution = _solved(method, instance, progress, examined)
+    solution = _solved(method, instance, progress, examined, asked)
     if not automatic or solution.status is not Status.NOT_CONVERGED:
         return solution
     left = hurried(instance, deadline)
@@ -227,14 +237,20 @@ def _nearly(solution: Solution) -> bool:
     )
 
 
-def _solved(method: Method, instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
+def _solved(
+    method: Method,
+    instance: Instance,
+    progress: Progress | None,
+    examined: bool = True,
+    asked: Instance | None = None,
+) -> Solution:
     """Solve an instance by a method, with a certificate if the method has one and it is required."""
     solver = _in_time(method)
     if not (method.certified and examined):
         return solver(instance, progress)
     from satsym.solvers.improving import improved
 
-    return improved(solver, instance, progress)
+    return improved(solver, instance, progress, asked)
 
 
 def _confirmed(swept: Solution, method: Method, progress: Progress | None, deadline: float) -> Solution:

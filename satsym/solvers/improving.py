@@ -58,7 +58,7 @@ NUDGE = 1e-6
 """Relative change of states and costates for differences of the control law."""
 
 
-def improved(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
+def improved(solver: Solver, instance: Instance, progress: Progress | None, asked: Instance | None = None) -> Solution:
     """Solve an instance, and again from each competitor that is cheaper than the solution found.
 
     For an instance with an initial guess the solution near this guess is kept; a cheaper one is only mentioned.
@@ -69,13 +69,15 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         What to solve.
     progress
         Called after each iteration.
+    asked
+        The problem whose conditions competitors have to meet, if it has more final conditions than the instance.
     """
     began = time.perf_counter()
     deadline = iteration.deadline_of(instance)
     solution = solver(instance, progress)
     if solution.status.answered and (endless := escape(instance)):
         return without_minimiser(solution, f"{endless}; {REMEDY}")
-    past = Past()
+    past = Past(asked=asked)
     certificate, better = examined(solution, deadline, past)
     if better is not None and instance.guess:
         less = f"another extremal costs less, {better.objective:.10g}: leave out [guess] to obtain that extremal"
@@ -87,7 +89,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
             break
         message = f"{better.message}; the first extremal found costs {first:.6g}"
         own = solution.instance
-        past = replace(past, answers=number) if better.instance.met == own.met else Past(number)
+        past = replace(past, answers=number) if better.instance.met == own.met else Past(number, asked=asked)
         own = own if better.instance.met == own.met else own.meeting(better.instance.met)
         solution = replace(better, instance=_begun(own, better), message=message, history=solution.history)
         certificate, better = examined(solution, deadline, past)

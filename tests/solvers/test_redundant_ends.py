@@ -161,3 +161,31 @@ def test_a_turn_through_an_obtuse_angle_leaves_out_what_its_side_leaves_open(tmp
 def test_nothing_is_left_out_where_controls_move_every_end(name: str) -> None:
     """Of the bead the energy is conserved, but its final speed is free."""
     assert redundant(instance.load(name)) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("limited", [False, True])
+def test_a_turn_that_ends_at_the_mirrored_place_is_no_competitor(tmp_path: Path, limited: bool) -> None:
+    """A turn through -120 degrees on the circle from a rate of 0.3; that through +120 degrees costs 0.44123.
+
+    The angle a(t) is a cubic, and the integral of its squared second derivative over the time 4 is 4 (3 d^2 / 16 - 3 d
+    w / 4 + w^2) / 4 with d = -2 pi / 3 and w = 0.3 (rest at the end), for each turn less or more.
+    """
+    c, s, rate = symbols_of(parts := (Variable("c", "c"), Variable("s", "s"), Variable("v", "v")))
+    bound = {"rate": rate**2 - 2.5**2} if limited else {}
+    moving = FirstOrder(
+        name="turning",
+        title="M",
+        states=parts,
+        controls=CONTROLS,
+        parameters=(),
+        rates={c: -s * rate, s: c * rate, rate: w},
+    )
+    problem = Problem(name="turn", title="T", model=moving, running_cost=w**2, path_constraints=bound)
+    end = f"[final]\nc = -0.5\ns = {-math.sqrt(0.75)!r}\nv = 0.0\n[time]\ntf = 4.0\n"
+    found = solve(build(tmp_path, problem, f"[initial]\nc = 1.0\ns = 0.0\nv = 0.3\n{end}"))
+    angle = -2.0 * math.pi / 3.0
+    known = 4.0 * (3.0 * angle**2 / 16.0 - 3.0 * angle * 0.3 / 4.0 + 0.3**2) / 4.0
+    assert found.objective == pytest.approx(known, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.solvers.search.starts.planning import Plan
 
 Answer = TypeVar("Answer")
@@ -48,9 +49,13 @@ class Past:
         Results of the starts, in their order.
     seen
         Pairs of the cost on the coarse mesh and the final cost of each motion.
+    asked
+        The problem as it was stated, if that of the answers lacks a final state that follows from the others: their
+        competitors have to reach it. ``None`` if both are the same.
     """
 
     answers: int = 0
     first: tuple[Array, Array] | None = None
     tried: list[Tried[Any]] = field(default_factory=list)
     seen: list[tuple[float, float]] = field(default_factory=list)
+    asked: Instance | None = None

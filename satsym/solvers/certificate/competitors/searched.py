@@ -63,7 +63,7 @@ def searched(
     """
     from satsym.solvers.search import solving
 
-    instance = replace(solution.instance, guess=Guess(), free=free)
+    instance = replace(past.asked or solution.instance, guess=Guess(), free=free)
     within = replace(limits, work=limits.meter.spent + WORK, watch=None)
     costs: dict[Kind, list[float]] = {kind: [] for kind in kinds(instance)}
     better: Solution | None = None
@@ -89,7 +89,7 @@ def searched(
             better = found
     for guess in [] if better else extremals_below(solution, past.answers):
         within = replace(within, work=limits.meter.spent + GUESSED)
-        found = None if limits.late else solving.searched(replace(guess, free=free), within)
+        found = None if limits.late else solving.searched(replace(guess, final=instance.final, free=free), within)
         costs[Kind.STARTS].append(math.nan if found is None else found.objective)
         if found is not None and margin(found.objective, solution.objective, COST_MARGIN) < 0.0:
             better = replace(found, instance=replace(found.instance, guess=Guess(), tf_guess=instance.tf_guess))
