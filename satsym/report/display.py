@@ -46,6 +46,22 @@ def formula(latex: str, fallback: str) -> str:
     return text
 
 
+def norm_latex(components: Sequence[str]) -> str:
+    """Return the Euclidean norm of a vector as a formula in its components."""
+    squares = " + ".join(f"({one})^2" if "^" in one else f"{one}^2" for one in components)
+    return rf"\sqrt{{{squares}}}"
+
+
+def norm_text(components: Sequence[str]) -> str:
+    """Return the Euclidean norm of a vector in the names of its components: ``sqrt(u1^2 + u2^2)``."""
+    return f"sqrt({' + '.join(f'{one}^2' for one in components)})"
+
+
+def radical(text: str) -> str:
+    """Write roots and powers in a text with their signs: ``sqrt(u1^2 + u2^2)`` as √(u1² + u2²)."""
+    return raised(text.replace("sqrt(", "\N{SQUARE ROOT}("))
+
+
 def plain(text: str) -> str:
     """Escape a text so that matplotlib takes nothing in it for a formula."""
     return text.replace("$", r"\$")

@@ -79,6 +79,30 @@ def test_the_other_slider_chooses_another_answer(page: Any) -> None:
     page.locator("#explore-answer").fill("0")
 
 
+def test_a_page_that_becomes_dark_has_other_colours(page: Any) -> None:
+    colour = "document.getElementById('explore-panels').layout.font.color"
+    light = page.evaluate(colour)
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_function(f"{colour} !== '{light}'")
+    page.emulate_media(color_scheme="light")
+    page.wait_for_function(f"{colour} === '{light}'")
+
+
+def test_the_slider_moves_the_animation_of_the_page(page: Any) -> None:
+    """Its own discs stand where the time of the slider has them, and do not move by themselves."""
+    page.evaluate(ANIMATED)
+    seen = "getComputedStyle(document.getElementById('disc')).transform"
+    page.locator("#explore-time").fill("250")
+    assert page.evaluate(seen) == "matrix(1, 0, 0, 1, 25, 0)"
+    page.wait_for_timeout(200)
+    assert page.evaluate(seen) == "matrix(1, 0, 0, 1, 25, 0)"
+
+
+ANIMATED = """document.querySelector("main").insertAdjacentHTML("beforeend",
+  "<section id='motion'><style>@keyframes d{to{transform:translate(100px,0)}}</style><figure class='motion driven'>" +
+  "<svg><circle id='disc' class='body' style='animation-name:d'/></svg></figure></section>")"""
+
+
 def test_it_plays_and_pauses(page: Any) -> None:
     page.locator("#explore-time").fill("0")
     page.locator("#explore-play").click()

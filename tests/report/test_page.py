@@ -27,7 +27,7 @@ from satsym.report.terminal.solution import solution_text
 from satsym.report.texts import load
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import solve
-from satsym.status import Verdict
+from satsym.status import Status, Verdict
 from satsym.symbolic import loader
 from tests.cli.test_cli import Run, case, run
 from tests.support.derived import derived, stated
@@ -168,7 +168,9 @@ def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text:
     assert still is not None
     last = tuple(map(float, path[1].split("L")[-1].split()))
     assert tuple(map(float, frames.groups())) == tuple(map(float, still.groups())) == last
-    assert re.search(r"prefers-reduced-motion: reduce\) \{\s*\.body, \.frame \{ animation: none", text)
+    assert re.search(
+        r"prefers-reduced-motion: reduce\) \{\s*\.motion:not\(\.driven\) :is\(\.body, \.frame\) \{ animation", text
+    )
     assert "#pause:checked ~ svg .body { animation-play-state: paused; }" in text
 
 
@@ -189,11 +191,17 @@ def test_what_is_too_near_its_reference_to_be_told_from_it_moves_as_it_is_seen_f
 
 
 @pytest.mark.slow
-def test_burns_are_drawn_in_pieces() -> None:
+def test_burns_are_drawn_in_pieces_and_the_caption_says_what_this_picture_has() -> None:
     scene = Scene.of(solve(instance.load("transfer-fuel")))
-    burns = re.search(r'<path d="([^"]*)" class="burns">', str(motion(scene, load("en"))))
+    drawn = str(motion(scene, load("en"), driven=True))
+    burns = re.search(r'<path d="([^"]*)" class="burns">', drawn)
     assert burns is not None
     assert burns[1].count("M") == 3
+    caption = drawn.partition("<figcaption>")[2]
+    for said in ("The ring follows the target.", "Thick arcs are burns.", "The slider of the section Explore sets"):
+        assert said in caption, said
+    assert "reference" not in caption, "it has none"
+    assert "inadmissible" not in caption
 
 
 def test_a_body_that_turns_is_shown_turn_by_turn_and_stands_at_its_end_without_motion() -> None:
@@ -205,7 +213,7 @@ def test_a_body_that_turns_is_shown_turn_by_turn_and_stands_at_its_end_without_m
     starts = [float(delay) for _, delay in frames]
     assert starts[0] == -SECONDS
     assert starts == sorted(starts)
-    assert "with all angles magnified" in drawn, "its angles are small"
+    assert "All angles are magnified" in drawn, "they are small"
     found = Attitude.of(Scene.of(simulate(instance.load("gravity-gradient"), None)))
     assert found is not None
     ends = re.findall(r'<path d="M[-.\d ]+L([-.\d ]+)" class="axis-3">', drawn)
@@ -229,13 +237,20 @@ def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
 
 
 def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(
-    text: str, solution: Solution, monkeypatch: pytest.MonkeyPatch
+    text: str, solution: Solution, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
     own = render(solution, derived(loader.problem("polar_orbit")[0]), Given("x.toml", "my model.py"))
     assert "satsym latex polar_orbit" in text
     assert "satsym report x.toml --html report.html --derivation &#x27;my model.py&#x27;" in own
     assert "satsym latex &#x27;my model.py:polar_orbit&#x27;" in own
+    assert "satsym derive" not in own, "its module is shipped"
+    file = tmp_path / "x.toml"
+    file.write_text('model = "generated/polar_orbit"\n', encoding="utf-8")
+    whole = replace(solution, instance=replace(solution.instance, path=file))
+    named = render(whole, None, Given("mine/x.toml", "mine/m.py", page="mine.html"))
+    assert "<code>satsym derive mine/m.py --out mine/generated\n" in named
+    assert "--html mine.html --derivation mine/m.py" in named
     assert "satsym latex" not in render(solution, None, Given("x.toml"))
 
 
@@ -336,3 +351,20 @@ def test_what_a_reader_looks_for_first_comes_first(solution: Solution) -> None:
     assert [unescape(title) for title in re.findall(r"<dt>(.*?)</dt>", text)] == ["Cost", "Final time", "Certificate"]
     assert "<dd>0.000426589</dd>" in text
     assert str(overview(found, load("en"))).count("<svg ") == 1
+
+
+def test_a_run_without_an_answer_says_first_why_and_that_it_has_no_certificate(solution: Solution) -> None:
+    failed = replace(solution, status=Status.INFEASIBLE, certificate=None, message="the nearest control misses r by 2")
+    text = str(answer.glance(failed, load("en")))
+    assert re.findall(r"<dt>(.*?)</dt>", text) == ["Status", "Details", "Certificate"]
+    assert "<dd>Infeasible</dd>" in text
+    assert f"<dd>The nearest control misses r by 2; {Status.INFEASIBLE.advice}</dd>" in text
+    assert "<dd>None, because no solution was found.</dd>" in text
+
+
+def test_the_problem_states_the_equations_of_motion_and_links_to_their_step(text: str) -> None:
+    problem = text.partition('<section id="problem">')[2].partition("</section>")[0]
+    begin, _, end = problem.partition("subject to the equations of motion (step")
+    assert "minimise" in begin
+    assert '<a href="#polar_orbit:first_order">' in end[:100]
+    assert "<math" in end

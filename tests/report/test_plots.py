@@ -477,9 +477,9 @@ def test_the_norm_of_a_set_of_controls_is_drawn_and_listed_with_its_bounds_and_u
     whole = solution(given)
     *_, norm = series.controls(Scene.of(whole))
     np.testing.assert_allclose(norm.values, np.hypot(*whole.u), rtol=1e-12)
-    assert (norm.symbol, norm.upper, norm.lower) == (r"$\Vert \mathrm{thrust} \Vert$", 0.7, -math.inf)
+    assert (norm.symbol, norm.upper, norm.lower) == (r"$\sqrt{T_r^2 + T_\theta^2}$", 0.7, -math.inf)
     assert norm.switching == (1.0,)
-    assert "norm of thrust" in solution_text(whole)
+    assert "sqrt(T_r^2 + T_t^2)" in solution_text(whole)
 
 
 @pytest.mark.parametrize(("seconds", "written"), [(0.0123, "0.012 s"), (9.96, "10 s"), (162.3, "162 s")])

@@ -81,7 +81,7 @@ def report(
         line.show(say("drawing ..."))
         answers = explored(solution, study) if interactive else []
         options = f"--interactive{f' --study {shlex.quote(str(study))}' if study else ''}" if interactive else ""
-        given = Given(subject, str(stated or ""), values, options)
+        given = Given(subject, str(stated or ""), values, options, str(page))
         text = render(solution, derivation, given, language(), answers, proof)
     write_text(page, text)
     tell(with_files(f"{case.name}: {message(solution.status.value)}", [page]))

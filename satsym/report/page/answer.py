@@ -7,19 +7,21 @@ from collections.abc import Sequence
 
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Enclosure, Outcome, Proof
-from satsym.report.display import capitalised, number, unit_text
+from satsym.report.display import capitalised, number, radical, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
-from satsym.report.terminal.arcs import in_words, rows_of_arcs
+from satsym.report.terminal.arcs import rows_of_arcs
 from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
-from satsym.report.terminal.solution import boundary, control_rows, state_rows
+from satsym.report.terminal.solution import boundary, control_rows, reason, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
 from satsym.solution import Certificate, Solution
 from satsym.spec import ProblemSpec
 from satsym.status import Scope, Verdict
 
+DIGITS = 6
+"""Number of significant digits of costates, as many as states have."""
 MET = "\N{CHECK MARK}"
 """Mark of a condition that is met."""
 
@@ -38,7 +40,7 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     )
     known = {
         "status": message(solution.status.value),
-        "message": in_words(solution, solution.message),
+        "message": reason(solution),
         "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
         "final_time": span,
         "boundary": boundary(instance),
@@ -52,16 +54,24 @@ def facts(solution: Solution, texts: Texts) -> Markup:
 
 
 def glance(solution: Solution, texts: Texts) -> Markup:
-    """Return the numbers that a reader looks for first: the cost, the final time, and what the certificate claims."""
+    """Return what a reader looks for first: the cost, the final time, and what the certificate claims.
+
+    Of a run without an answer, these are the status, the reason and what can be done about it, and that there is no
+    certificate.
+    """
     maximise, found = solution.instance.model.spec.maximise, solution.certificate
     cost, span = _cost_and_span(solution, 6)
-    known = {
-        "maximum" if maximise else "cost": cost if solution.status.answered else message(solution.status.value),
-        "final_time": span if solution.status.answered else "",
-        "certificate": capitalised(verdict_text(found, maximise)) if found else "",
-    }
+    claimed = capitalised(verdict_text(found, maximise)) if found else ""
+    if solution.status.answered:
+        known = {"maximum" if maximise else "cost": cost, "final_time": span, "certificate": claimed}
+    else:
+        known = {
+            "status": capitalised(message(solution.status.value)),
+            "message": capitalised(reason(solution)),
+            "certificate": claimed or texts.get("page", "no_certificate"),
+        }
     pairs = (
-        tag("div", tag("dt", texts.get("page", key)), tag("dd", decimal(value.strip())))
+        tag("div", tag("dt", texts.get("page", key)), tag("dd", decimal(value.strip())), class_=key)
         for key, value in known.items()
         if value
     )
@@ -78,12 +88,14 @@ def _cost_and_span(solution: Solution, digits: int) -> tuple[str, str]:
 
 def states(solution: Solution, texts: Texts) -> Markup:
     """Return the initial and final value of each state, and its costate."""
-    return table(texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam))
+    rows = state_rows(solution.instance, solution.times, solution.x, solution.lam, DIGITS)
+    return table(texts.get("page", "states"), rows)
 
 
 def controls(solution: Solution, texts: Texts) -> Markup:
     """Return the range of each control, and its bounds."""
-    return table(texts.get("page", "controls"), control_rows(solution.instance, solution.times, solution.u))
+    rows = control_rows(solution.instance, solution.times, solution.u)
+    return table(texts.get("page", "controls"), [(radical(name), *others) for name, *others in rows])
 
 
 def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
@@ -91,6 +103,7 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
     theorem = message(found.because) if theorem_lines(found) else ""
     proved = found.verdict is Verdict.CERTIFIED and found.scope is Scope.LOCAL
     compared, (header, *conditions) = competitor_rows(found, spec), condition_rows(found)
+    without = [message(one.kind.value) for one in found.competitors if one.tried and not one.solved]
     checked = [(*header[:3], say("met")), *((*row[:3], row[3] or MET) for row in conditions)]
     return joined(
         tag("p", capitalised(verdict_text(found, spec.maximise)), "."),
@@ -98,6 +111,7 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
         tag("p", texts.get("page", "certified")) if proved else "",
         table(texts.get("page", "checks"), checked),
         table(texts.get("page", "compared"), compared) if len(compared) > 1 else "",
+        tag("p", texts.get("page", "none_solved", kinds=", ".join(without))) if without else "",
     )
 
 

@@ -100,6 +100,7 @@ class Derived:
             yield scrolled(math(f"L = {typeset.tex(problem.running_cost)}", block=True))
             if terminal:
                 yield scrolled(math(f"S = {typeset.tex(problem.terminal_cost)}", block=True))
+            yield from self._rates()
             sentence, limits = admissible(problem, texts)
             yield tag("p", prose(sentence, {}))
             yield from (scrolled(math(line, block=True)) for line in limits)
@@ -117,6 +118,20 @@ class Derived:
                 yield scrolled(math(f"{left} = {right}", block=True))
         yield self._quantities()
         yield from self._definitions()
+
+    def _rates(self) -> Iterator[Markup]:
+        """Return the equations of motion that the cost is subject to, with a link to the step that has them."""
+        if "first_order" not in self._derivation:
+            return
+        step, typeset = self._derivation.step("first_order"), self._context.typeset
+        number = 1 + [one.name for one in self._derivation.steps].index(step.name)
+        label = tex.label(self._context.address(step))
+        sentence = self._texts.get(
+            "statement", "subject_to" if len(step.equations) > 1 else "subject_to_one", step=label
+        )
+        yield tag("p", prose(sentence, {label: str(number)}))
+        for e in step.equations:
+            yield scrolled(math(in_lines(typeset.tex(e.lhs), typeset.terms(e.rhs)), block=True))
 
     def _definitions(self) -> Iterator[Markup]:
         """Return the named constants, numbered, since steps cite them."""

@@ -14,13 +14,21 @@
   const reading = document.getElementById("explore-reading");
   const scenesHome = document.getElementById("explore-scenes");
   const panelsHome = document.getElementById("explore-panels");
+  const panelsKey = document.getElementById("explore-key");
+  const animation = () => document.querySelector("#motion .motion");
+  animation()?.classList.add("driven");
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const ink = css("--ink"), faint = css("--faint"), line = css("--line");
+  let ink, faint, line, BLUE, VERMILION, GREEN, PURPLE, GLOBE, PAINTS;
+  /** Read the colours of the page, which are others in the dark. */
+  const readColours = () => {
+    [ink, faint, line, BLUE, VERMILION, GREEN, PURPLE, GLOBE] =
+      ["--ink", "--faint", "--line", "--blue", "--vermilion", "--green", "--purple", "--globe"].map(css);
+    // colours that the data have are those of printed pictures
+    PAINTS = { "#0072b2": BLUE, "#d55e00": VERMILION, "#009e73": GREEN, "#a6508a": PURPLE };
+  };
+  readColours();
   const plain = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
   const SECONDS = 12, ROW = 150, GAP = 0.045;
-  const BLUE = css("--blue"), VERMILION = css("--vermilion"), GREEN = css("--green"), PURPLE = css("--purple"), GLOBE = css("--globe");
-  // colours that the data have are those of printed pictures; a dark page has others
-  const PAINTS = { "#0072b2": BLUE, "#d55e00": VERMILION, "#009e73": GREEN, "#a6508a": PURPLE };
   const paint = (colour) => PAINTS[colour.toLowerCase()] ?? colour;
   let current = answers[begin], time = current.t[0], running = 0, updates = [];
 
@@ -58,8 +66,35 @@
   const axis = (more) => ({ gridcolor: line, zerolinecolor: line, linecolor: line, exponentformat: "power", minexponent: 5, ...more });
   const curve = (rows, name, look, mode = "lines") => ({
     x: rows[0], y: rows[1], ...(rows.length > 2 ? { z: rows[2], type: "scatter3d" } : {}), mode, name,
-    hoverinfo: "skip", ...look,
+    hoverinfo: "skip", ...look, ...(look.line && rows.length < 3 ? { line: { simplify: false, ...look.line } } : {}),
   });
+  const SWATCH = {
+    line: (colour, dash = "") => `<line x1="1" y1="6" x2="27" y2="6" stroke="${colour}" stroke-width="2.5" stroke-dasharray="${dash}"/>`,
+    thin: (colour) => `<line x1="1" y1="6" x2="27" y2="6" stroke="${colour}"/>`,
+    thick: (colour) => `<line x1="1" y1="6" x2="27" y2="6" stroke="${colour}" stroke-width="5"/>`,
+    arrow: (colour) => `<line x1="1" y1="6" x2="20" y2="6" stroke="${colour}" stroke-width="3"/><path d="M18 1l9 5l-9 5z" fill="${colour}"/>`,
+    ring: (colour) => `<circle cx="14" cy="6" r="5" fill="none" stroke="${colour}" stroke-width="1.4"/>`,
+    disc: (colour) => `<circle cx="14" cy="6" r="5" fill="${colour}" stroke="${ink}"/>`,
+    square: () => `<rect x="9.5" y="1.5" width="9" height="9" fill="white" stroke="${ink}"/>`,
+    diamond: () => `<path d="M14 1l5 5l-5 5l-5 -5z" fill="white" stroke="${ink}"/>`,
+    cross: (colour) => `<path d="M9 6h10M14 1v10" stroke="${colour}" stroke-width="2.5"/>`,
+    strip: () => `<rect x="1" y="1" width="26" height="10" fill="rgba(138,138,138,.3)"/>`,
+  };
+  /** One line that says what each kind of line and mark is. */
+  const key = (entries) => {
+    const list = document.createElement("p");
+    list.className = "key";
+    const said = new Set();
+    for (const [shape, text, ...look] of entries) {
+      if (!text || said.has(text)) continue;
+      said.add(text);
+      const entry = document.createElement("span");
+      entry.innerHTML = `<svg viewBox="0 0 28 12" aria-hidden="true">${SWATCH[shape](...look)}</svg>`;
+      entry.append(text);
+      list.append(entry);
+    }
+    return list;
+  };
   const dot = (rows, name, colour, symbol, size) =>
     curve(rows, name, { marker: { color: colour, size, symbol, line: { color: ink, width: 1 } } }, "markers");
 
@@ -71,24 +106,37 @@
     const side = sideOf();
     const deep = scene.kind === "space";
     const zero = scene.path.map(() => [0]);
-    const traces = [];
-    for (const field of scene.forbidden)
+    const traces = [], said = [];
+    for (const field of scene.forbidden) {
+      said.push(["strip", words.inadmissible]);
       traces.push({
         type: "contour", x: field.x, y: field.y, z: field.z, showscale: false, hoverinfo: "skip",
         contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(138,138,138,.22)",
         line: { color: faint, width: 1 }, name: words.inadmissible,
       });
+    }
     if (scene.radius && deep) traces.push(globe(scene));
     if (scene.central && !scene.radius) traces.push(dot(zero, scene.body || words.origin, ink, "cross", deep ? 4 : 9));
-    for (const [key, look] of [
-      ["free", { line: { color: faint, width: 1 } }],
-      ["reference", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }],
-      ["other", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }],
-      ["path", { line: { color: BLUE, width: deep ? 5 : 2.5 } }],
-      ["burns", { line: { color: VERMILION, width: deep ? 8 : 5 }, connectgaps: false }],
-    ]) if (scene[key]) traces.push(curve(scene[key], words[key], look));
-    if (scene.target) traces.push(dot(scene.target, words.target, "rgba(0,0,0,0)", "circle", deep ? 6 : 12));
-    if (scene.passed) traces.push(dot(scene.passed, words.passed, "white", "diamond", deep ? 5 : 9));
+    for (const [name, look, ...sample] of [
+      ["path", { line: { color: BLUE, width: deep ? 5 : 2.5 } }, "line", BLUE],
+      ["burns", { line: { color: VERMILION, width: deep ? 8 : 5 }, connectgaps: false }, "thick", VERMILION],
+      ["free", { line: { color: faint, width: 1 } }, "thin", faint],
+      ["reference", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }, "line", ink, "5 3"],
+      ["other", { line: { color: ink, width: deep ? 2 : 1, dash: "dash" } }, "line", ink, "5 3"],
+    ]) if (scene[name]) {
+      const drawn = curve(scene[name], words[name], look);
+      if (name === "path" || name === "burns") traces.push(drawn); else traces.unshift(drawn);
+      said.push([sample[0], words[name], ...sample.slice(1)]);
+    }
+    if (scene.target) {
+      traces.push(dot(scene.target, words.target, "rgba(0,0,0,0)", "circle", deep ? 6 : 12));
+      said.push(["ring", words.target, ink]);
+    }
+    if (scene.passed) {
+      traces.push(dot(scene.passed, words.passed, "white", "diamond", deep ? 5 : 9));
+      said.push(["diamond", words.passed]);
+    }
+    if (scene.central) said.push(scene.radius ? ["disc", scene.body, GLOBE] : ["cross", scene.body || words.origin, ink]);
     const moving = [];
     const follow = (key, colour, symbol, size) => {
       if (!scene[key]) return;
@@ -97,6 +145,7 @@
     };
     follow("reference", "white", "circle", deep ? 5 : 9);
     follow("moving", "white", "square", deep ? 5 : 9);
+    if (scene.moving) said.push(["square", words.moving]);
     follow("path", BLUE, "circle", deep ? 6 : 11);
     if (scene.thrust) {
       moving.push({
@@ -106,7 +155,10 @@
           return [from, from === null || along === null ? null : from + along];
         }),
       });
-      traces.push(curve(scene.path.map(() => [0, 0]), scene.thrust_called, { line: { color: VERMILION, width: deep ? 7 : 3 } }));
+      const head = { mode: "lines+markers", marker: { color: VERMILION, size: [0, 11], symbol: "arrow", angleref: "previous", line: { width: 0 } } };
+      const look = { line: { color: VERMILION, width: deep ? 7 : 3 }, ...(deep ? {} : head) };
+      traces.push(curve(scene.path.map(() => [0, 0]), scene.thrust_called, look, look.mode));
+      said.push([deep ? "thick" : "arrow", scene.thrust_called, VERMILION]);
     }
     const names = scene.labels, range = (i) => [scene.low[i], scene.high[i]];
     const disc = scene.radius && !deep ? [{
@@ -127,6 +179,7 @@
       if (deep) changed.z = rows.map((r) => r[2]);
       if (moving.length) Plotly.restyle(home, changed, moving.map((one) => one.index));
     });
+    return said;
   };
 
   const globe = (scene) => {
@@ -179,6 +232,8 @@
       const found = bodies.map((body) => body());
       Plotly.restyle(home, { x: found.map((r) => r[0]), y: found.map((r) => r[1]), z: found.map((r) => r[2]) }, found.map((_, k) => k));
     });
+    const axes = colours.map((colour, i) => ["line", words.axis.replace("<number>", i + 1), colour]);
+    return [...axes, ["line", words.fixed, faint, "2 2"], ...(scene.torque ? [["thick", words.torque, PURPLE]] : [])];
   };
 
   /** All quantities over one time; what is hovered sets the time of all. */
@@ -188,7 +243,7 @@
     const narrow = panelsHome.clientWidth < 700 || !right.length;
     const columns = narrow ? [[...left, ...right]] : [left, right];
     const rows = Math.max(...columns.map((column) => column.length));
-    const traces = [], cursors = [], shapes = [], annotations = [], axes = {};
+    const traces = [], cursors = [], shapes = [], annotations = [], axes = {}, said = [];
     const span = [current.t[0], current.t[current.t.length - 1]];
     let k = 0;
     columns.forEach((column, c) => column.forEach((panel, r) => {
@@ -196,20 +251,27 @@
       const from = columns.length > 1 ? [[0, 0.44], [0.56, 1]][c] : [0, 1];
       const top = 1 - r / column.length, bottom = 1 - (r + 1) / column.length;
       const last = r === column.length - 1;
-      axes[`xaxis${id}`] = axis({ domain: from, anchor: `y${id}`, range: span, ...(k > 1 ? { matches: "x" } : {}), showticklabels: last, title: last ? { text: current.time, standoff: 4 } : undefined });
+      axes[`xaxis${id}`] = axis({ domain: from, anchor: `y${id}`, range: span, ...(k > 1 ? { matches: "x" } : {}), showticklabels: last, hoverformat: ".6~g", title: last ? { text: current.time, standoff: 4 } : undefined });
       axes[`yaxis${id}`] = axis({ domain: [bottom + GAP / Math.max(1, column.length / 4), top - 0.012], anchor: `x${id}`, range: [panel.low, panel.high], title: { text: panel.label, font: { size: 12 }, standoff: 6 }, nticks: 6 });
       const on = { xaxis: `x${id}`, yaxis: `y${id}` };
       for (const [key, look] of [["free", { color: faint, width: 1 }], ["reference", { color: ink, width: 1, dash: "dash" }]])
-        if (panel[key]) traces.push({ ...on, x: current.t, y: panel[key], mode: "lines", line: look, hoverinfo: "skip" });
+        if (panel[key]) {
+          traces.push({ ...on, x: current.t, y: panel[key], mode: "lines", line: { simplify: false, ...look }, hoverinfo: "skip" });
+          said.push([key === "free" ? "thin" : "line", words[key], look.color, look.dash && "5 3"]);
+        }
+      if (panel.lower !== undefined || panel.upper !== undefined) said.push(["strip", words.inadmissible]);
+      if (panel.marks.length) said.push(["line", panel.marked, ink, "2 3"]);
+      if (panel.target !== undefined) said.push(["ring", words.target, ink]);
       for (const key of ["lower", "upper"])
         if (panel[key] !== undefined) shapes.push({ type: "rect", xref: `x${id}`, yref: `y${id}`, x0: span[0], x1: span[1], y0: panel[key], y1: key === "lower" ? panel.low : panel.high, fillcolor: "rgba(138,138,138,.2)", line: { width: 0 }, layer: "below" });
       for (const mark of panel.marks) shapes.push({ type: "line", xref: `x${id}`, yref: `y${id}`, x0: mark, x1: mark, y0: panel.low, y1: panel.high, line: { color: paint(panel.colour), width: 1, dash: "dot" } });
       if (panel.target !== undefined) traces.push({ ...on, x: [span[1]], y: [panel.target], mode: "markers", marker: { color: "rgba(0,0,0,0)", size: 11, line: { color: ink, width: 1.2 } }, hoverinfo: "skip", cliponaxis: false });
-      traces.push({ ...on, x: current.t, y: panel.values, mode: "lines", line: { color: paint(panel.colour), width: 2 }, name: panel.meaning, hovertemplate: `${panel.label}: %{y:.6g}<br>${current.time}: %{x:.6g}<extra>${panel.meaning}</extra>` });
+      traces.push({ ...on, x: current.t, y: panel.values, mode: "lines", line: { color: paint(panel.colour), width: 2, simplify: false }, name: panel.meaning, hovertemplate: `${panel.label.replace(/ \[(.*)\]$/, "")}: %{y:.6~g} ${/ \[(.*)\]$/.exec(panel.label)?.[1] ?? ""}<extra></extra>` });
       cursors.push({ index: traces.length, panel });
       traces.push({ ...on, x: [0, 0, 0], y: [panel.low, 0, panel.high], mode: "lines+markers", line: { color: faint, width: 1 }, marker: { size: [0, 8, 0], color: paint(panel.colour) }, hoverinfo: "skip" });
     }));
     Plotly.newPlot(panelsHome, traces, layout({ height: 70 + ROW * rows, margin: { l: 92, r: 12, t: 8, b: 44 }, hovermode: "x", shapes, annotations, ...axes }), plain);
+    panelsKey.replaceChildren(key(said));
     panelsHome.removeAllListeners?.("plotly_hover");
     panelsHome.on("plotly_hover", (event) => { stop(); set(Number(event.points[0].x)); });
     updates.push(() => {
@@ -229,11 +291,21 @@
       cell.textContent = number(at(panel.values, there), Math.max(Math.abs(panel.low), Math.abs(panel.high)));
     });
   };
+  /** Set the animation of the page's own solution to this time. */
+  const drive = () => {
+    const own = answers[begin].t, span = own[own.length - 1] - own[0];
+    const share = span > 0 ? Math.min(0.9999, Math.max(0, (time - own[0]) / span)) : 0;
+    animation()?.getAnimations({ subtree: true }).forEach((one) => {
+      one.pause();
+      one.currentTime = 10000 * share; // it lasts ten seconds
+    });
+  };
   const set = (t) => {
     time = Math.min(current.t[current.t.length - 1], Math.max(current.t[0], t));
     const span = current.t[current.t.length - 1] - current.t[0];
     slider.value = String(span > 0 ? (1000 * (time - current.t[0])) / span : 0);
     updates.forEach((update) => update());
+    drive();
     tell();
   };
   const stop = () => { cancelAnimationFrame(running); running = 0; play.textContent = words.play; play.setAttribute("aria-pressed", "false"); };
@@ -264,7 +336,10 @@
       scenesHome.append(figure);
       return home;
     });
-    current.scenes.forEach((scene, k) => (scene.kind === "attitude" ? drawAttitude : drawPath)(homes[k], scene));
+    current.scenes.forEach((scene, k) => {
+      const said = (scene.kind === "attitude" ? drawAttitude : drawPath)(homes[k], scene);
+      homes[k].parentElement.append(key(said));
+    });
     Plotly.purge(panelsHome);
     drawPanels();
     const body = document.createElement("tbody");
@@ -293,6 +368,10 @@
     current = answers[Number(chooser.value)];
     chooser.setAttribute("aria-valuetext", current.label);
     time = current.t[0] + share * (current.t[current.t.length - 1] - current.t[0]);
+    draw();
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    readColours();
     draw();
   });
   if (chooser) chooser.value = String(begin);

@@ -42,6 +42,7 @@ WORDS = {
     "body_called": "body",
     "torque": "torque",
     "fixed": "fixed axes",
+    "axis": "body axis <number>",
     "magnified": "angles enlarged <times> times",
     "play": "Play",
     "pause": "Pause",
@@ -89,6 +90,7 @@ def explore(answers: Sequence[Answer], texts: Texts) -> Markup:
         tag("div", *controls, class_="controls"),
         tag("div", id="explore-scenes"),
         tag("div", id="explore-panels"),
+        tag("div", id="explore-key"),
         tag("div", table, class_="wide", id="explore-reading", tabindex="0"),
         class_="explorer",
         hidden=True,
@@ -162,7 +164,7 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
         objective = instance.model.spec.objective(float(table["objective"][row]))
         case = changed(instance, settings | values)
         arrays = kept[row]
-        own = replace(
+        varied = replace(
             solution,
             instance=case,
             objective=objective,
@@ -175,8 +177,11 @@ def explored(solution: Solution, study: Path | None = None) -> list[Answer]:
             events=(),
             history=(),
         )
-        found.append(Answer(own, label, _same(case, instance)))
-    return found
+        found.append(Answer(varied, label, _same(case, instance)))
+    # the slider begins at the solution that the rest of the page is about, which need not be a case of the study
+    return (
+        found if any(one.own for one in found) else [Answer(solution, say("the solution of this page"), True), *found]
+    )
 
 
 def _same(one: Instance, other: Instance) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.report.display import engineering, labelled, length_scale, number, plain, unit_text
+from satsym.report.display import engineering, labelled, length_scale, norm_text, number, plain, unit_text
 from satsym.report.plots import series, style
 from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
@@ -40,7 +40,7 @@ THRUST = 0.2
 
 _NAMES = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau phi chi psi omega"
 _GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξπρστφχψω", strict=True))
-_GREEK |= {"Delta": "Δ", "Omega": "Ω", "Gamma": "Γ", "Vert": "‖", "varphi": "φ", "cos": "cos", "sin": "sin"}
+_GREEK |= {"Delta": "Δ", "Omega": "Ω", "Gamma": "Γ", "varphi": "φ", "cos": "cos", "sin": "sin"}
 _ACCENTS = {"dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}"}
 _FORMULA = re.compile(r"\$([^$]*)\$")
 _BARE = re.compile(r"\\(?:mathrm|mathbf|text)\s*\{([^{}]*)\}")
@@ -130,6 +130,7 @@ def _panel(group: str, quantity: Series, reading: Reading, colour: str, kept: ND
         "low": _digits(reading.low),
         "high": _digits(reading.high),
         "marks": [_digits(time) for time in quantity.switching],
+        "marked": say("waypoint" if quantity.said == series.PASSED else "switching time"),
     }
     for name, values in (("reference", reading.reference), ("free", reading.free)):
         if values is not None:
@@ -148,7 +149,7 @@ def _switching(scene: Scene, control: Series, kept: NDArray[np.intp]) -> list[Da
     names = [v.symbol for v in spec.controls]
     for one in switching_functions(scene):
         alone = len(one.controls) == 1 and control.name == names[one.controls[0]]
-        together = len(one.controls) > 1 and control.name.startswith("|")
+        together = len(one.controls) > 1 and control.name == norm_text([names[i] for i in one.controls])
         if alone or together:
             unit = cost_per(control.unit, spec)
             latex = rf"S_{{{control.latex}}}" if alone else "S"
@@ -341,12 +342,11 @@ def _forbidden(around: Surroundings, axes: Array, low: Array, high: Array, scale
 def _attitude(attitude: Attitude, kept: NDArray[np.intp]) -> Data:
     own: Data = {
         "kind": "attitude",
-        "title": say("attitude, with the body axes 1 (red), 2 (green) and 3 (blue)"),
+        "title": say("attitude"),
         "turns": [_numbers(turn.ravel()) for turn in attitude.turns[kept]],
         "magnified": decimal(number(attitude.magnified)) if attitude.magnified != 1.0 else "",
     }
     if attitude.torque is not None and (most := np.nanmax(np.linalg.norm(attitude.torque, axis=0), initial=0.0)) > 0.0:
-        own["title"] += f", {say('torque (purple)')}"
         own["torque"] = [_numbers(row) for row in attitude.torque[:, kept] / most]
     return own
 
@@ -366,8 +366,20 @@ def shown(label: str) -> str:
     return " ".join(_FORMULA.sub(lambda found: _formula(found[1]), text).split())
 
 
+def _with_roots(latex: str) -> str:
+    """Return a formula whose roots are parentheses after a sign, as ``√(x + y)``."""
+    while (begin := latex.find(r"\sqrt{")) >= 0:
+        depth, end = 1, begin + len(r"\sqrt{")
+        while depth and end < len(latex):
+            depth += {"{": 1, "}": -1}.get(latex[end], 0)
+            end += 1
+        inside = latex[begin + len(r"\sqrt{") : end - 1]
+        latex = f"{latex[:begin]}\N{SQUARE ROOT}({inside}){latex[end:]}"
+    return latex
+
+
 def _formula(latex: str) -> str:
-    text = _BARE.sub(r"\1", latex.replace(r"\,", "\N{THIN SPACE}").replace(r"\!", ""))
+    text = _BARE.sub(r"\1", _with_roots(latex).replace(r"\,", "\N{THIN SPACE}").replace(r"\!", ""))
     text = _ACCENT.sub(lambda found: (found[2] or found[3]) + " " + _ACCENTS[found[1]], text)
     text = _NAME.sub(lambda found: _GREEK.get(found[1], found[1]), text)
     for accent in _ACCENTS.values():

@@ -41,6 +41,8 @@ EDGES = [
 
 GRID = 81
 """Number of points along each side of the grid on which forbidden regions are computed."""
+TOLD = ("reference", "other", "met", "free", "burns", "target", "passed")
+"""What the description says of a picture that has it, beside the path."""
 MARKED = {"target": "9", "passed": "5"}
 """Radii of the marks of the final condition, and of waypoints."""
 
@@ -48,13 +50,19 @@ Placing: TypeAlias = Callable[[Array], Array]
 """A function from points of a plane to points of the picture, shapes (2, N)."""
 
 
-def motion(scene: Scene, texts: Texts) -> Markup:
-    """Return a figure: the path in space, else the body that turns; empty where states give neither."""
+def motion(scene: Scene, texts: Texts, driven: bool = False) -> Markup:
+    """Return a figure: the path in space, else the body that turns; empty where states give neither.
+
+    Parameters
+    ----------
+    driven
+        Whether the page has a slider, which sets the time of the animation.
+    """
     orbit = Orbit.of(scene)
     if orbit is None:
         attitude = Attitude.of(scene)
-        return Markup() if attitude is None else _turning(scene, attitude, texts)
-    if (drawn := _from_reference(scene, orbit, texts)) is not None:
+        return Markup() if attitude is None else _turning(scene, attitude, texts, driven)
+    if (drawn := _from_reference(scene, orbit, texts, driven)) is not None:
         return drawn
     view, known = orbit.views[0].axes, np.isfinite(orbit.path).all(axis=0)
     around = orbit.around
@@ -73,10 +81,14 @@ def motion(scene: Scene, texts: Texts) -> Markup:
     walls = [one.in_plane for one in around.forbidden if one.in_plane is not None and view.shape == (2, 2)]
     fields = [lambda seen, wall=wall: wall(view.T @ seen) for wall in walls]
     inside = _moving(seen, moving, orbit.central, marked, fields)
-    return _figure(scene, inside, texts, "motion_inside" if fields else "motion_about")
+    told = ["path", *(name for name in TOLD if name in seen or name in moving or name in marked)]
+    if marked.get("passed", np.zeros((2, 1))).shape[1] > 1:
+        told[told.index("passed")] = "passed_many"
+    told += ["inside"] if fields else []
+    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in told], driven)
 
 
-def _from_reference(scene: Scene, orbit: Orbit, texts: Texts) -> Markup | None:
+def _from_reference(scene: Scene, orbit: Orbit, texts: Texts, driven: bool) -> Markup | None:
     """Draw the path relative to the reference if the two could not be distinguished in space."""
     if orbit.relative is None or orbit.reference is None:
         return None
@@ -87,7 +99,8 @@ def _from_reference(scene: Scene, orbit: Orbit, texts: Texts) -> Markup | None:
     if np.abs(curves["path"]).max() >= UNSEEN * np.linalg.norm(orbit.reference, axis=0).max():
         return None
     inside = _moving(curves, {"path": (scene.nodes[known], curves["path"])}, True)
-    return _figure(scene, inside, texts, "motion_relative")
+    told = ["seen", "path", *(["free"] if "free" in curves else [])]
+    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in told], driven)
 
 
 def _moving(
@@ -126,10 +139,11 @@ def _moving(
     ]
 
 
-def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more: str) -> Markup:
-    """Return the picture with a button to stop it, and its description."""
+def _figure(scene: Scene, inside: list[Markup], texts: Texts, kind: str, about: Sequence[str], driven: bool) -> Markup:
+    """Return the picture with a button to stop it, and its description: what moves, and what else is seen."""
     unit = unit_text(scene.time_unit) or texts.get("page", "units_of_time")
     span = f"{decimal(number(float(scene.times[-1] - scene.times[0])))} {unit}"
+    begin = texts.get("page", f"{kind}_driven" if driven else f"{kind}_over", span=span)
     return tag(
         "figure",
         tag("input", type="checkbox", id="pause"),
@@ -141,12 +155,12 @@ def _figure(scene: Scene, inside: list[Markup], texts: Texts, about: str, **more
             role="img",
             aria_label=texts.get("page", "motion_alt", span=span),
         ),
-        tag("figcaption", texts.get("page", about, span=span, **more)),
+        tag("figcaption", " ".join([begin, *about, texts.get("page", f"{kind}_still")])),
         class_="motion",
     )
 
 
-def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
+def _turning(scene: Scene, attitude: Attitude, texts: Texts, driven: bool) -> Markup:
     """Return a box with its axes, one picture after the other; the last one for readers without animation."""
     known = np.flatnonzero(np.isfinite(scene.x).all(axis=0))
     ticks = np.linspace(scene.nodes[known[0]], scene.nodes[known[-1]], TURNS)
@@ -170,8 +184,9 @@ def _turning(scene: Scene, attitude: Attitude, texts: Texts) -> Markup:
             tag("g", tag("path", d=edges), *axes, class_="frame last" if k == TURNS - 1 else "frame", style=delay)
         )
     magnified = decimal(number(attitude.magnified))
-    about = "turning_about" if attitude.magnified == 1.0 else "turning_magnified"
-    return _figure(scene, inside, texts, about, **({} if about == "turning_about" else {"times": magnified}))
+    about = [texts.get("page", "turning_axes")]
+    about += [texts.get("page", "turning_magnified", times=magnified)] if attitude.magnified != 1.0 else []
+    return _figure(scene, inside, texts, "turning", about, driven)
 
 
 def _region(field: Placing, low: Array, high: Array, to: Placing) -> str:

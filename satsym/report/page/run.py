@@ -6,9 +6,11 @@ import io
 import math
 import re
 import shlex
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from satsym.control_set import stated_constraints
@@ -17,7 +19,7 @@ from satsym.instance.files import text as text_of
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Proof
 from satsym.report import plots
-from satsym.report.display import raised, unit_text
+from satsym.report.display import norm_text, radical, raised, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.look import Look
 from satsym.report.page import answer
@@ -61,12 +63,15 @@ class Given:
         Other values of its numbers, each as ``KEY=VALUE``.
     interactive
         Options that made the page interactive, as they were given.
+    page
+        The file that the page is written to.
     """
 
     subject: str
     stated: str = ""
     values: Sequence[str] = ()
     interactive: str = ""
+    page: str = "report.html"
 
 
 def render(
@@ -171,7 +176,7 @@ def _sections(
         "problem": problem(solution.instance, derived, given.values, texts),
         "answer": joined(*parts),
         "explore": explore(explored, texts) if explored else Markup(),
-        "motion": motion(scene, texts) if scene.drawable else Markup(),
+        "motion": motion(scene, texts, bool(explored)) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),
         "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
         "proof": section(proof, texts) if proof else Markup(),
@@ -198,17 +203,28 @@ def _derivation(derived: Derived | None, texts: Texts) -> Markup:
 
 
 def _commands(solution: Solution, derivation: Derivation | None, given: Given, texts: Texts, proved: bool) -> Markup:
-    stated, model = given.stated, solution.instance.model.spec.name
+    stated, instance = given.stated, solution.instance
+    model = instance.model.spec.name
     name = shlex.join([given.subject, *(part for value in given.values for part in ("--set", value))])
     again = f" --derivation {shlex.quote(stated)}" if stated else ""
     again += given.interactive and f" {given.interactive}"
     again += " --prove" if proved else ""
-    lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html{again}"]
+    lines = _derive(instance, given)
+    lines += [f"satsym solve {name} --plot", f"satsym report {name} --html {shlex.quote(given.page)}{again}"]
     lines += [f"satsym prove {name}"] if proved else []
     if derivation is not None:
         lines.append(f"satsym latex {shlex.quote(f'{stated}:{model}') if stated else model}")
     about = texts.get("page", "reproduce_about", version=__version__)
     return joined(tag("p", about), tag("pre", tag("code", "\n".join(lines)), tabindex="0"))
+
+
+def _derive(instance: Instance, given: Given) -> list[str]:
+    """Return the command that writes the module which the instance file names by its path; none for a shipped one."""
+    if not given.stated or file_of(instance) is None:
+        return []
+    model = str(tomllib.loads(text_of(instance.path)).get("model", ""))
+    folder = Path(given.subject).parent / Path(model).parent
+    return [f"satsym derive {shlex.quote(given.stated)} --out {shlex.quote(str(folder))}"] if "/" in model else []
 
 
 def _file(room: str, name: str) -> Markup:
@@ -325,7 +341,8 @@ def _admissible(instance: Instance) -> list[tuple[str, ...]]:
             rows.append((variable.symbol, *(figure(b) if math.isfinite(b) else "" for b in bounds), variable.unit))
     for norm in instance.bounded_norms:
         lower = figure(norm.lower) if norm.lower else ""
-        rows.append((f"|{norm.name or 'u'}|", lower, figure(norm.upper), spec.controls[norm.places[0]].unit))
+        named = radical(norm_text([spec.control_names[i] for i in norm.places]))
+        rows.append((named, lower, figure(norm.upper), spec.controls[norm.places[0]].unit))
     rows += [(name.replace("_", " "), "", "0", "1") for name in stated_constraints(spec)]
     return rows
 

@@ -240,6 +240,8 @@ def _facts(scene: Scene) -> list[str]:
 
 ANEW = 100.0
 """Ratio of a residual to the one before above which a new phase of the iteration begins."""
+MOST_DRAWN, FEW = 80, 4
+"""Largest number of iterations that are drawn, and smallest number of values in the drawn phases."""
 EXACT = 1e-16
 """Smallest displayed value relative to the largest; smaller values are due to rounding."""
 ELSEWHERE = 0.05
@@ -269,16 +271,22 @@ def convergence(scene: Scene) -> Figure | None:
         (_above_rounding(distances, max(_largest([*costs, last]), saturated)), style.PURPLE),
         (_above_rounding(residuals, _largest(residuals)), style.GREEN),
     ]
+    # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
+    begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
+    first = _last_phases(begun, panels[1][0])
+    at, begun = at[first:], begun[begun > first] - first
+    panels = [(values[first:], colour) for values, colour in panels]
     drawn = [int(np.isfinite(values).sum()) > 1 for values, _ in panels]
     if not any(drawn):
         return None
-    # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
-    begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
     columns = style.across(sum(drawn))
     rows = sum(drawn) // columns
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 4.1 if rows == 1 else 6.6)
     places = iter(page.subplots(rows, columns, squeeze=False).flat)
     saying = [_of_cost(scene, last), _of_residual(bool(begun.size))]
+    if first:
+        said = say("the last <shown> of <whole> iterations", shown=len(at), whole=len(history))
+        saying[1] = f"{saying[1][0]}\n{said}", saying[1][1]
     if not drawn[0]:  # the cost is said all the same
         saying[1] = f"{saying[0][0]}\n{saying[1][0]}", saying[1][1]
     for (values, colour), (title, label), has_values in zip(panels, saying, drawn, strict=True):
@@ -288,6 +296,18 @@ def convergence(scene: Scene) -> Figure | None:
             axes.set_ylabel(label)
             _decades(axes, at, values, begun, colour)
     return page
+
+
+def _last_phases(begun: NDArray[np.intp], residuals: Array) -> int:
+    """Return the first iteration that is drawn: of long histories, only the last phases are.
+
+    At least a few values of them are above rounding.
+    """
+    whole = len(residuals)
+    if whole <= MOST_DRAWN:
+        return 0
+    far = [int(k) for k in begun if k >= whole - MOST_DRAWN and np.isfinite(residuals[k:]).sum() >= FEW]
+    return far[0] if far else whole - MOST_DRAWN
 
 
 def _of_cost(scene: Scene, last: float) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.control_set import stated_constraints
-from satsym.report.display import formula, plain
+from satsym.report.display import formula, norm_latex, norm_text, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results import restrictions
@@ -149,8 +149,8 @@ def controls(scene: Scene) -> list[Series]:
         times = {t / scene.time_factor for i in bound.places for t in switching[i]}
         found.append(
             Series(
-                r"\Vert " + (rf"\mathrm{{{bound.name}}}" if bound.name else "u") + r" \Vert",
-                f"|{bound.name or 'u'}|",
+                norm_latex([spec.controls[i].latex for i in bound.places]),
+                norm_text([spec.control_names[i] for i in bound.places]),
                 spec.controls[bound.places[0]].unit,
                 say("norm of <name>", name=bound.name) if bound.name else say("norm of the control"),
                 norm,

@@ -13,6 +13,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.shown import spec_of
 from satsym.instance.unknowns import Place
+from satsym.report.display import norm_text
 from satsym.report.results.objects import cost_per, time_unit
 from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.arcs import at_bound, in_words, rows_of_arcs
@@ -45,7 +46,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
-        _message(solution.status, solution.message, in_words(solution, solution.message)),
+        wrapped(reason(solution)),
     ]
     if solution.status in (Status.INFEASIBLE, Status.NO_MINIMISER):
         return joined(blocks)  # there is no last attempt at an answer, for there is none
@@ -60,6 +61,11 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     return joined(blocks)
 
 
+def reason(solution: Solution) -> str:
+    """Return the message of a solution, with the advice that it lacks."""
+    return _advised(solution.status, solution.message, in_words(solution, solution.message))
+
+
 def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     """Summarise a simulation; see :func:`solution_text`."""
     instance = simulation.instance
@@ -69,7 +75,7 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     metrics = [(name, figure(value, 10)) for name, value in _metrics(simulation).items()]
     blocks = [
         _heading(instance, simulation.status, say("feedback <law>", law=message(simulation.feedback)), colour),
-        _message(simulation.status, simulation.message, message(simulation.message)),
+        wrapped(_advised(simulation.status, simulation.message, message(simulation.message))),
         table([("", ""), *facts])[1:],
         _states(instance, simulation.times, simulation.x, None),
         table([each("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
@@ -177,17 +183,25 @@ def _effort(solution: Solution) -> str:
     return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, max(2, whole))} s"
 
 
-def _message(status: Status, reason: str, said: str) -> list[str]:
-    """Return a reason with the advice that it lacks."""
-    return wrapped("; ".join(filter(None, [said, message(status.advice_beside(reason))])))
+def _advised(status: Status, english: str, said: str) -> str:
+    """Return a message, as it is said, with the advice that it lacks."""
+    return "; ".join(filter(None, [said, message(status.advice_beside(english))]))
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
     return table(state_rows(instance, times, x, lam), right=(*range(1, 6), 7))
 
 
-def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[tuple[str, ...]]:
-    """Return a table with a row for each state: initial, final and required value, and its costate."""
+def state_rows(
+    instance: Instance, times: Array, x: Array, lam: Array | None, digits: int = 10
+) -> list[tuple[str, ...]]:
+    """Return a table with a row for each state: initial, final and required value, and its costate.
+
+    Parameters
+    ----------
+    digits
+        Number of significant digits of costates.
+    """
     spec = spec_of(instance)
     reference, worth = _reference(instance, times), [0.0] * len(x) if lam is None else _worth(x, lam)
     rows: list[tuple[str, ...]] = [
@@ -205,7 +219,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
                 "" if reference is None else figure(reference[i]),
                 off,
                 "" if state.unit == "1" else state.unit,
-                "" if lam is None else figure(_without_rounding(_first(lam[i]), lam[i], worth[i]), 10),
+                "" if lam is None else figure(_without_rounding(_first(lam[i]), lam[i], worth[i]), digits),
                 "" if lam is None or (by := cost_per(state.unit, spec)) == "1" else by,
             )
         )
@@ -247,7 +261,7 @@ def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, 
         rows.append((control.symbol, *_range(times, u[i], limits), unit))
     for bound in instance.bounded_norms:
         norm = np.sqrt((u[list(bound.places)] ** 2).sum(axis=0)) if u.size else u[0]
-        named = say("norm of <name>", name=bound.name) if bound.name else say("norm")
+        named = norm_text([spec.control_names[i] for i in bound.places])
         unit = spec.controls[bound.places[0]].unit
         unit = "" if unit == "1" else unit
         rows.append((named, *_range(times, norm, (bound.lower or -math.inf, bound.upper)), unit))
