@@ -202,7 +202,8 @@ def test_panels_on_a_slide_leave_room_for_each_other(count: int) -> None:
         ("time.tf [s]", "$t_f$ [s]"),
         ("control.u1.upper [km/s**2]", "upper bound of $u_{1}$ [km/s²]"),
         ("parameters.drag_area [m**2]", "parameters.drag_area [m²]"),
-        ("objective [J]", "objective [J]"),
+        ("objective [J]", "$J$ [J]"),
+        ("control.max_norm [m/s**2]", "largest norm of the control [m/s²]"),
     ],
 )
 def test_columns_of_a_study_are_formulas_on_axes(column: str, shown: str) -> None:

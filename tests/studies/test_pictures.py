@@ -41,7 +41,7 @@ def test_units_on_axes_are_spelled_as_people_write_them() -> None:
         numbers = Numbers("a study", varied, {cost: np.arange(6.0)}, ["converged"] * 5 + ["infeasible"], shape)
         axes = [place for page in figures(numbers).values() for place in page.axes]
         texts = " ".join(text for place in axes for text in (place.get_xlabel(), place.get_ylabel()))
-        assert "objective [m²/s³]" in texts
+        assert "$J$ [m²/s³]" in texts
         assert "v [km/(s·rad)]" in texts
         assert "**" not in texts
 

@@ -100,7 +100,6 @@ def study(
     interrupted study is continued with --resume; nothing is computed twice.
     """
     from satsym import instance
-    from satsym.report.results.study_table import path_of
     from satsym.report.study import carry_out, draw, written_as
     from satsym.report.terminal.solution import with_files
     from satsym.report.terminal.study import progress_line, study_text
@@ -130,8 +129,19 @@ def study(
             raise
     drawn = draw(folder, look)[1] if look else []
     pictures = {"pictures": [str(path) for path in drawn]} if look else {}
-    answer(as_json, result | pictures, lambda: with_files(study_text(result), [path_of(folder), *drawn]))
+    answer(as_json, result | pictures, lambda: with_files(study_text(result), [*_written(folder), *drawn]))
     return ExitCode.DONE if result["status"] == Status.CONVERGED.value else ExitCode.NO_ANSWER
+
+
+def _written(folder: Path) -> list[Path]:
+    """Return the files of a study, those with the trajectories and the request included, without its pictures."""
+    from satsym.report.results.set_list import ASKED, LIST
+    from satsym.report.results.sets import listed
+    from satsym.report.results.study_table import path_of
+
+    table, names = path_of(folder), listed(folder)
+    trajectories = sorted(name for name in names if name.endswith(".npz"))
+    return [table, *(folder / name for name in (*trajectories, ASKED, LIST))]
 
 
 @contextmanager

@@ -29,6 +29,8 @@ SHOWN = 1.12
 """Displayed duration, relative to the longest transition."""
 NEAR_ZERO = 0.5
 """Distance of zero from a curve, relative to the range of the curve, up to which the line of zero is drawn."""
+ROOM = 2.8
+"""Largest displayed damping, relative to the largest computed one, which leaves room for the labels of the lines."""
 COMMANDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 DAMPINGS = (0.2, 5.0)
 """Smallest and largest damping of the displayed range, relative to that of the instance."""
@@ -55,7 +57,7 @@ def page(cases: Sequence[Case]) -> Figure | None:
     pairs = 2 // columns
     rows = below + pairs * (1 + (law is not None))
     driven = all(case.instance.driven for case in cases)
-    title = cases[0].instance.title if driven else ", ".join(case.instance.name for case in cases)
+    title = cases[0].instance.title if driven else say("comparison of <number> instances", number=len(cases))
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, columns)
     measures = _measures(answered, panels)
@@ -197,16 +199,17 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
     bars = (("transition_time", say("transition time")), (f"{control.symbol}_total", say("total impulse")))
     for axes, (key, title) in zip(panels, bars, strict=True):
         unit, far = unit_of(cases, key), [1e-300]
-        values = [case.metrics[key] for case in cases]
+        values, shown_unit = [case.metrics[key] for case in cases], display.unit_text(unit)
         places = np.arange(len(cases))[::-1]
         axes.barh(
             places, np.nan_to_num(values), height=0.62, color=[COLOURS[k % 6] for k in range(len(cases))], zorder=2.5
         )
         for place, value, case in zip(places, values, cases, strict=True):
             sudden = abs(case.metrics.get("impulse", 0.0)) if key != "transition_time" else 0.0
-            said = decimal(f"{value:.4g}")
+            said = f"{decimal(f'{value:.4g}')} {shown_unit}".rstrip()
             if sudden:
-                said = say("<total>, of which <sudden> as an impulse", total=said, sudden=decimal(f"{sudden:.4g}"))
+                part = f"{decimal(f'{sudden:.4g}')} {shown_unit}".rstrip()
+                said = say("<total>, of which <sudden> as an impulse", total=said, sudden=part)
             if key == "transition_time" and case.how == "classical":
                 settled = say("settled to within <share> after <time>", time=said, share=f"{SETTLING_BAND:.0%}")
                 said = settled if np.isfinite(value) else say("not settled")
@@ -225,7 +228,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
         axes.set_xlim(0.0, max(far) if max(far) > 1e-300 else 1.0)
         axes.grid(axis="y", visible=False)
         axes.set_title(title)
-        axes.set_xlabel(display.labelled("", unit) if unit else "")
+        axes.set_xlabel(display.labelled(title, unit))
 
 
 def _range(panels: Sequence[Axes], case: Case) -> None:
@@ -248,11 +251,12 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
         (over.control_peak, control, "largest <name> after the step, by damping and command"),
         (over.peaks[name], watched, "largest <name>, by damping and command"),
     )
+    of_command = display.unit_text(next(v.unit for v in spec.states if v.symbol == options.follows))
     for axes, (values, variable, title) in zip(panels, shown, strict=True):
         for j, (command, shade) in enumerate(zip(commands, shades, strict=True)):
             axes.loglog(over.dampings, values[:, j], color=style.BLUE, alpha=float(shade), linewidth=1.6)
             axes.annotate(
-                decimal(f"{command:.3g}"),
+                f"{decimal(f'{command:.3g}')} {of_command}".rstrip(),
                 (over.dampings[-1], values[-1, j]),
                 fontsize=style.points(8.0),
                 va="center",
@@ -263,15 +267,17 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
             )
         limit = case.instance.limits.get(variable.symbol)
         if limit:
-            axes.axhline(limit, color=style.ALARM, linewidth=1.2, linestyle=(0, (4, 2)))
+            ends = [over.dampings[0], over.dampings[-1]]
+            axes.plot(ends, [limit, limit], color=style.ALARM, linewidth=1.2, linestyle=(0, (4, 2)))
             axes.annotate(
-                say("limit"),
+                say("limit of <name>", name=display.formula(variable.latex, variable.symbol)),
                 (over.dampings[0], limit),
                 fontsize=style.points(8.0),
                 xytext=(2, 2),
                 textcoords="offset points",
                 color=style.ALARM,
             )
+        axes.set_xlim(over.dampings[0], ROOM * over.dampings[-1])
         here = list(COMMANDS).index(1.0)
         value = float(np.interp(options.damping, over.dampings, values[:, here]))
         axes.plot([options.damping], [value], color=style.INK, **style.START)

@@ -110,7 +110,8 @@ def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) 
     cells = np.ma.masked_invalid(table[fixed])
     drawn = place.pcolormesh(x, y, cells, shading="nearest", **_colours(cells))
     if name.startswith(Column.OBJECTIVE) and min(x.shape) >= FEWEST and np.ptp(cells.compressed()) > 0.0:
-        place.contour(x, y, cells, levels=LEVELS, colors="white", linewidths=0.8, alpha=0.8)
+        lines = place.contour(x, y, cells, levels=LEVELS, colors="white", linewidths=0.8, alpha=0.8)
+        place.clabel(lines, fontsize=style.points(7.5), fmt=lambda value: decimal(display.number(value, 4)))
     status = np.array(numbers.status).reshape(numbers.shape)[fixed]
     lacking = _without_numbers(place, x, y, np.where(np.isfinite(table[fixed]), Status.CONVERGED.value, status))
     for axis, k, low in (("x", varying[0], x), ("y", varying[1], y)):
@@ -279,7 +280,7 @@ def on_axis(column: str) -> str:
 
 def _said(name: str) -> str:
     if name == Column.OBJECTIVE:
-        return say("objective")
+        return "$J$"
     if name in _TIMES:
         return f"${_TIMES[name]}$"
     place, _, rest = name.partition(".")
@@ -288,6 +289,8 @@ def _said(name: str) -> str:
     if place == "costate_initial" and (symbol := latex(rest)):
         return rf"$\lambda_{{{symbol}}}(t_0)$"
     if place == Table.CONTROL.value:
+        if rest == "max_norm":
+            return say("largest norm of the control")
         control, _, side = rest.rpartition(".")
         if side in SIDES and (symbol := latex(control)):
             return say("upper bound of <name>" if side == SIDES[1] else "lower bound of <name>", name=f"${symbol}$")

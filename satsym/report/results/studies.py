@@ -209,6 +209,13 @@ def _branches(merged: Merged) -> dict[str, int] | None:
     return {"count": count, "borders": found.borders, "changed": len(found.changed)}
 
 
+_TITLES = {
+    Command.SOLVE.value: "<name>: solutions of <rows>",
+    Command.SIMULATE.value: "<name>: simulations of <rows>",
+    Command.LQR.value: "<name>: regulators of <rows>",
+}
+
+
 def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     """Return the columns of a table that are drawn: varied numbers, and the first quantities that differ by row.
 
@@ -230,7 +237,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     status, branch = found.pop(Column.STATUS), found.pop(Column.BRANCH, None)
     columns = {labels[name]: values for name, values in found.items()}
     rows = counted(said["rows"], "case")
-    title = say("<name>: <each> for <rows>", name=said["instance"], each=said["each"], rows=rows)
+    title = say(_TITLES[said["each"]], name=said["instance"], rows=rows)
     given = {labels[name]: columns.pop(labels[name]) for name in varied}
     return Numbers(
         title=title,

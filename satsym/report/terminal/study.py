@@ -50,7 +50,10 @@ def study_text(found: Mapping[str, Any]) -> str:
     if found["worst"]:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
         lines += ["", say("cases with the worst objective:")]
-        lines += table([each("case", "objective", "command"), *rows], right=(0, 1))
+        case, objective, reproduce = each("case", "objective", "command")
+        unit = found["units"].get("objective") or "1"
+        head = (case, objective if unit == "1" else f"{objective} [{unit}]", reproduce)
+        lines += table([head, *rows], right=(0, 1))
     if found["failures"]:
         rows = [(str(one["row"]), message(one["status"]), one["reproduce"]) for one in found["failures"]]
         heading = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
