@@ -66,7 +66,8 @@ def _row(solution: Solution, controls: str, times: Sequence[float], unit: str) -
     names = controls.split(", ")
     if thrust := _burns(solution, names, times, unit):
         return say("thrust arcs:"), controls, thrust
-    if len(names) == 1 and (spans := _saturated(solution, names[0], times)):
+    spans, *others = (_saturated(solution, name, times) for name in names)
+    if spans and all(other == spans for other in others):
         return say("saturated:"), controls, _listed([_span(*span) for span in spans], unit)
     listed = say("at <times>", times=_listed([figure(t) for t in times], unit))
     return say("switching times:"), controls, listed

@@ -320,6 +320,23 @@ def _last(row: Array) -> float:
     return float(row[-1]) if len(row) else math.nan
 
 
+_STATED = {
+    "cost": "cost",
+    "switching times": "switching times",
+    "stated switching times, to the spacing of the nodes": "switching times",
+    "stated times of saturation": "times of saturation",
+    "stated times of events": "times of events",
+}
+"""Check -> what result.json states and the trajectory contradicts where it fails."""
+
+
+def _contradicted(found: Examination) -> str:
+    """Name the numbers of result.json that the certificate found not to be those of the trajectory."""
+    checks = found.certificate.checks if found.certificate else ()
+    wrong = dict.fromkeys(_STATED[one.name] for one in checks if not one.passed and one.name in _STATED)
+    return ", ".join(map(say, wrong))
+
+
 def examination_text(found: Examination, colour: bool) -> str:
     """Return the claims of a saved result, the differences from its files, and the new certificate."""
     instance, spec = found.solution.instance, found.solution.instance.model.spec
@@ -327,7 +344,9 @@ def examination_text(found: Examination, colour: bool) -> str:
     heading = say("<name>, model <model>", name=instance.name, model=spec.name)
     rows = [(one.key, str(one.stated), str(one.found)) for one in found.differences]
     agreement = say("result.json agrees with the other files")
-    if len(rows) == 1:
+    if not rows and (wrong := _contradicted(found)):
+        agreement = say("the trajectory contradicts these numbers in result.json: <quantities>", quantities=wrong)
+    elif len(rows) == 1:
         agreement = say("one number in result.json does not agree with the other files")
     elif rows:
         agreement = say("<number> numbers in result.json do not agree with the other files", number=len(rows))

@@ -91,7 +91,7 @@ def why(instance: Instance, limits: Limits, early: bool = False) -> Reason:
         return Status.TIME_LIMIT if limits.late else Status.NOT_CONVERGED, message
     if near.undecided or (early and near.distance <= FAR_OFF):
         return Status.NOT_CONVERGED, f"{message}; {near.message}, but other controls might reach it"
-    return Status.INFEASIBLE, f"{near.message}; {message}"
+    return Status.INFEASIBLE, near.message
 
 
 def _jumping(controls: list[str]) -> str:

@@ -92,7 +92,7 @@ class Nearest:
     def message(self) -> str:
         """Return the distance as a message of one line."""
         misses = ", ".join(
-            " ".join(filter(None, [f"{name} by {value:.3g}", self.units.get(name)]))
+            " ".join(filter(None, [f"{name} by {abs(value):.3g}", self.units.get(name)]))
             for name, value in self.missed.items()
         )
         return (
