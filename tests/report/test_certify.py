@@ -142,6 +142,20 @@ def test_the_command_says_what_holds(folders: dict[str, Path], capsys: pytest.Ca
     assert "result.json agrees with the other files" in capsys.readouterr().out
 
 
+def test_a_cost_that_the_trajectory_contradicts_is_named(
+    folders: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "altered"
+    shutil.copytree(folders["bryson-denham"], folder)
+    result = json.loads((folder / "result.json").read_text())
+    result["objective"] *= 2.0
+    (folder / "result.json").write_text(json.dumps(result))
+    assert main(["certify", str(folder)]) == 5
+    shown = capsys.readouterr().out
+    assert "the trajectory contradicts these numbers in result.json: cost" in " ".join(shown.split())
+    assert "agrees" not in shown
+
+
 def test_the_command_says_what_differs(folders: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     folder = tmp_path / "altered"
     shutil.copytree(folders["bryson-denham"], folder)

@@ -169,7 +169,8 @@ def overview(scene: Scene) -> Figure | None:
         elif turning is not None:
             attitudes.on_sphere(left.subplots(), turning)
     small_multiples(right, scene, [(q, colour) for quantities, colour in groups for q in quantities], columns)
-    entries = legend.motion(scene, style.STATE)
+    # an axis of a body on the sphere has the colour of states, whose panels need no entry
+    entries = legend.motion(scene, style.STATE)[int(shown is None and turning is not None) :]
     entries += space.entries(shown) if shown is not None else attitudes.entries() if turning is not None else []
     legend.below(page, entries + legend.on_axes([*states, *controls, *limits], style.CONTROL))
     return page

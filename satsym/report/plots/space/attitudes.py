@@ -137,6 +137,7 @@ def entries() -> list[legend.Entry]:
 def on_sphere(axes: Axes, attitude: Attitude) -> None:
     """Draw the paths of the tips of the body's axes on a sphere about the body, seen from aside."""
     from matplotlib.patches import Circle
+    from matplotlib.patheffects import withStroke
 
     right, up = from_aside(("1", "2", "3")).axes
     towards = np.cross(right, up)
@@ -173,4 +174,6 @@ def on_sphere(axes: Axes, attitude: Attitude) -> None:
             va="center",
             color=colour,
             fontsize=style.points(10.5),
+            path_effects=[withStroke(linewidth=3.0, foreground="white")],
+            zorder=6.0,
         )
