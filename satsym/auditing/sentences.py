@@ -62,13 +62,6 @@ def in_indonesian(text: str) -> str:
     return _DIMENSION.sub(lambda name: known[name[0]]["id"] if name[0] in known else name[0], text)
 
 
-def measured_in_indonesian(text: str) -> str:
-    """Return computed values with the names of their terms in Indonesian; numbers and formulas are unchanged."""
-    known = _pairs("measured")
-    phrases = "|".join(map(re.escape, known))
-    return re.sub(rf"\b(?:{phrases})\b", lambda phrase: known[phrase[0]], text)
-
-
 def property_in_indonesian(value: str) -> str:
     """Translate a property that textbooks name in Indonesian; return any other value as it is."""
     return _pairs("properties").get(value, value)

@@ -16,7 +16,7 @@ from satsym.auditing.measurements.earth import quantity
 from satsym.auditing.measurements.formulas import subs
 from satsym.auditing.propositions.evaluation import Evaluation
 from satsym.auditing.propositions.reading import proposition
-from satsym.report.findings.review import Review, measured
+from satsym.report.findings.review import Review
 from satsym.report.texts import load
 from satsym.status import BadInput
 from tests.support.ledgers import TANGENTIAL, judged, ledger, row
@@ -66,12 +66,9 @@ def test_what_terms_measure_is_called_in_indonesian_and_formulas_are_left(tmp_pa
     rows = [{"item": "1", "printed": "2 == 3", **claim}]
     (found,) = judged(tmp_path, rows).values()
     assert (found.why, found.why_id) == ("It is unstable.", "Sistemnya tidak stabil.")
-    row = replace(found, derived="min(u) = 0 (the optimum of its-thesis, 4012 numbers)")
-    assert measured(Review.of(ledger(tmp_path, rows), [row], load("id")).rows[0]) == (
-        "min(u) = 0 (optimum its-thesis, 4012 bilangan)"
-    )
-    formula = replace(row, derived="numbers", by_formula=True)
-    assert Review.of(ledger(tmp_path, rows), [formula], load("id")).rows[0].derived == "numbers"
+    row = replace(found, derived="len(meanings['x']) = 2", why="", diagnosis="")
+    review = Review.of(ledger(tmp_path, rows), [row], load("id"))
+    assert review.in_words(review.rows[0]) == "Dokumen memakai `x` dengan 2 arti."
 
 
 @pytest.mark.parametrize("path", documents.shipped(), ids=lambda path: path.name)

@@ -73,10 +73,11 @@ class Pages:
 
     def explained(self) -> Said:
         """Return the explanation for readers, with the values of its terms filled in."""
-        return Said(self._filled(self._row.why, str), self._filled(self._row.why_id, property_in_indonesian))
+        english = self._filled(self._row.why, str, " and ")
+        return Said(english, self._filled(self._row.why_id, property_in_indonesian, " dan "))
 
-    def _filled(self, why: tuple[str | Proposition, ...], written: Callable[[str], str]) -> str:
-        return "".join(part if isinstance(part, str) else written(self._evaluation.term(part)) for part in why)
+    def _filled(self, why: tuple[str | Proposition, ...], written: Callable[[str], str], last: str) -> str:
+        return "".join(part if isinstance(part, str) else written(self._evaluation.term(part, last)) for part in why)
 
     @cached_property
     def _evaluation(self) -> Evaluation:

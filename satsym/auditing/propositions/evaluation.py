@@ -31,7 +31,7 @@ from satsym.auditing.propositions.reading import (
     row_key,
 )
 from satsym.auditing.propositions.relations import Fit, compared
-from satsym.auditing.propositions.values import Family, Record, Undecided, alike, in_words
+from satsym.auditing.propositions.values import Family, Record, Undecided, alike, in_words, names_in_words
 from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
@@ -82,11 +82,14 @@ class Evaluation:
             warnings.simplefilter("ignore")
             return self._judge(proposition.tree, {})
 
-    def term(self, proposition: Proposition) -> str:
-        """Return the value of a term as text; "undecided" with the reason if it cannot be computed."""
+    def term(self, proposition: Proposition, last: str = ", ") -> str:
+        """Return the value of a term as text; "undecided" with the reason if it cannot be computed.
+
+        The last of several names or formulas that are texts follows after a word such as "and".
+        """
         with np.errstate(all="ignore"):
             try:
-                return in_words(self._value(proposition.tree, {}))
+                return names_in_words(self._value(proposition.tree, {}), last)
             except Undecided as reason:
                 return f"undecided ({reason})"
 

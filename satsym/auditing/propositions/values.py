@@ -134,3 +134,13 @@ def in_words(value: Any) -> str:
         inside = [in_words(entry) for entry in value[:_LISTED]]
         return f"[{', '.join(inside)}{', ...' if len(value) > _LISTED else ''}]"
     return str(value)
+
+
+def names_in_words(value: Any, last: str) -> str:
+    """Return a short text for a value; names or formulas in a list are enumerated, each between backquotes."""
+    if not (isinstance(value, list) and value and all(isinstance(entry, str) for entry in value)):
+        return in_words(value)
+    *first, end = [f"`{entry}`" for entry in value]
+    if len(value) > _LISTED:
+        return ", ".join([*first[:_LISTED], "..."])
+    return f"{', '.join(first)}{last}{end}" if first else end

@@ -10,7 +10,7 @@ from typing import Any
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
-from satsym.auditing.sentences import measured_in_indonesian, say
+from satsym.auditing.sentences import say
 from satsym.report.findings import terms
 from satsym.report.texts import Texts
 
@@ -26,8 +26,6 @@ STANDS = ("confirmed", "imprecise", "notation", "unsound")
 """Verdicts on rows that are essentially right: exactly, up to the last digits or the notation, or for another
 reason."""
 KINDS = ("equation", "matrix", "algorithm", "number", "unit", "table", "claim")
-IN_WORDS = ("claim", "algorithm", "table", "number")
-"""Kinds of rows whose computed terms are expressed in words."""
 _PLACE_WORD = re.compile(r"[a-z]{3,}")
 _END = re.compile(r"[.](?=\s+[`A-Z0-9])")
 
@@ -98,9 +96,9 @@ class Review:
 
     @property
     def chart(self) -> list[tuple[str, int, int, int]]:
-        """Count the rows that stand, fall and could not be judged, by kind and conclusions first."""
+        """Count the rows that stand, fall and could not be judged: the conclusions, then the others by kind."""
         groups = [("conclusion", [row for row in self.rows if row.role == "conclusion"])]
-        groups += [(kind, [row for row in self.rows if row.kind == kind]) for kind in KINDS]
+        groups += [(kind, [r for r in self.rows if r.kind == kind and r.role != "conclusion"]) for kind in KINDS]
         counted = []
         for name, rows in groups:
             stand, undecided = (sum(r.verdict in verdicts for r in rows) for verdicts in (STANDS, OPEN))
@@ -108,6 +106,15 @@ class Review:
                 named = self.texts.get("row_kinds", name)
                 counted.append((named, stand, len(rows) - stand - undecided, undecided))
         return counted
+
+    @property
+    def held(self) -> str:
+        """Return which verdicts are among the rows that stand; empty if all of them are confirmed."""
+        found = {verdict: self.counts[verdict] for verdict in STANDS if verdict in self.counts}
+        if found.keys() <= {"confirmed"}:
+            return ""
+        listed = [f"{number} {self.texts.get('verdicts', verdict)}" for verdict, number in found.items()]
+        return self._say("held", sum(found.values()), listed=self.texts.listed(listed))
 
     @cached_property
     def formulas(self) -> dict[str, Any]:
@@ -145,13 +152,15 @@ class Review:
             return row.why
         denied = say("denied")
         said = row.diagnosis.removeprefix(f"{denied}: ").removeprefix(f"{denied.indonesian}: ")
-        if not row.by_formula and row.derived and row.kind in IN_WORDS:
-            said = said.replace(row.derived, self.in_words(row).rstrip("."))
+        if not row.by_formula and row.derived and row.verdict not in OPEN:
+            words = self.in_words(row)
+            said = said if words else row.diagnosis
+            said = said.replace(f": {row.derived}", f". {words}".rstrip(". ")).replace(row.derived, words.rstrip("."))
         return f"{said} {row.why}".rstrip()
 
     def in_words(self, row: Judged) -> str:
-        """Return the measured values of a row as sentences and mathematics."""
-        return terms.sentences(row.derived, self.texts)
+        """Return the measured values of a row as sentences; empty where they have none."""
+        return terms.sentences(row.derived, self.texts, flat(row.printed) if row.kind == "claim" else "")
 
     def chosen(self, row: Judged) -> str:
         """Return the named numbers that the auditor chose for judging a row; empty where there are none."""
@@ -269,7 +278,7 @@ def items(judged: Sequence[Judged]) -> list[str]:
 
 def _in_indonesian(row: Judged) -> Judged:
     texts = {name: getattr(row, f"{name}_id") or getattr(row, name) for name in ("says", "why", "diagnosis")}
-    return replace(row, **texts, derived=row.derived if row.by_formula else measured_in_indonesian(row.derived))
+    return replace(row, **texts)
 
 
 def quote(row: Judged) -> tuple[str, str]:

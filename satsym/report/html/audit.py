@@ -11,7 +11,7 @@ from satsym.records import shelf
 from satsym.report.findings.review import Review, title
 from satsym.report.html import section
 from satsym.report.html.markup import Markup, joined, math, tag
-from satsym.report.html.section import Section, breakable, scrolled, slug
+from satsym.report.html.section import PageReview, Section, breakable, scrolled, slug
 from satsym.report.texts import Texts, load
 
 
@@ -40,7 +40,7 @@ def render(
         HTML that depends on nothing but the arguments.
     """
     texts = load(language)
-    reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    reviews = [PageReview.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     parts = [Section(review) for review in reviews]
     equations: dict[str, section.Derived] = {}
     for ledger, part in zip(ledgers, parts, strict=True):
@@ -117,6 +117,8 @@ def _filters(texts: Texts, reviews: Sequence[Review]) -> Markup:
     }
     selects = []
     for name, options in choices.items():
+        if len(options) < 2:
+            continue  # a choice between one document
         entries = [tag("option", texts.get("audit", "all"), value="")]
         entries += [tag("option", shown, value=value) for value, shown in options.items()]
         selects.append(tag("label", texts.get("audit", name), " ", tag("select", *entries, name=name)))

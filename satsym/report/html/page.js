@@ -10,7 +10,7 @@ function show() {
     entry.hidden = wanted.some((choice) => entry.dataset[choice.name] !== choice.value);
   for (const group of document.querySelectorAll("section.weight, details.all"))
     group.hidden = !group.querySelector("[data-verdict]:not([hidden])");
-  const chosen = form.elements.document.value;
+  const chosen = form.elements.document?.value;
   for (const part of document.querySelectorAll("main > section:not(#derived-equations)"))
     part.hidden = Boolean(chosen) && part.id !== chosen;
   const number = findings.filter((finding) => !finding.hidden).length;

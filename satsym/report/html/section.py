@@ -15,6 +15,7 @@ from satsym.auditing.latex.writing import in_latex
 from satsym.auditing.ledger.contents import Row, calls_in
 from satsym.formula.tree import Equality, Text, grid
 from satsym.formula.values import Matrix
+from satsym.formula.writing import GREEK
 from satsym.records import record, shelf
 from satsym.report.display import raised, with_raised_units
 from satsym.report.findings.review import (
@@ -27,6 +28,7 @@ from satsym.report.findings.review import (
     recompute,
     where,
 )
+from satsym.report.findings.tested import mathematics
 from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.latex import formula_tex
 
@@ -35,7 +37,22 @@ if TYPE_CHECKING:
 
 
 _CODE = re.compile(r"`([^`]*)`")
+_POINT = re.compile(r"((?:section|bagian) [0-9IVX.]+) (\d+)((?:, .+)?)$")
+_ATOM = r"(?:[A-Za-z]\w*|\d+)(?:(?:\*\*|\^)(?:-?\d+|\([^()\s]*\)))?"
+_BARE = re.compile(rf"(?<![\w`.*/^])-?{_ATOM}(?:[*/]{_ATOM})*(?![\w(*^/])")
+_SPECIAL = re.compile(r"[*^]|_d?dot\b|_\w+/|/\w+_")
+_UNITS = frozenset("m s g N km kg cm dyn min h deg rad A J W V kelvin".split())
+"""Names that are units where they stand in a product after a number."""
+_UNSET = re.compile(r"\\(?:mathrm|text)\{([A-Z])((?:\\?_[a-z]+\d*)+)\}")
 _REASON = re.compile(r"(?<=[:;] )\((\d+)\)")
+
+
+class PageReview(Review):
+    """A review whose places are written out, since pages give the command for each of them."""
+
+    def placed(self, name: str) -> str:
+        """Return the name of a place, with a numbered point of a section as such."""
+        return _POINT.sub(rf"\1, {self.texts.get('audit', 'point')} \2\3", super().placed(name))
 
 
 class Section:
@@ -44,6 +61,7 @@ class Section:
     def __init__(self, review: Review) -> None:
         self._review, self._texts = review, review.texts
         self._language = review.ledger.document.language
+        self._is_foreign = self._language != review.texts.language
         self._judged = {row.key: row for row in review.rows}
         self.rows = [row for row in review.ledger.rows if row.key in self._judged]
         self._read = {row.key: row for row in self.rows}
@@ -57,6 +75,8 @@ class Section:
         summary = tag(
             "div", *(tag("p", self._sentence(text)) for text in review.summary), self._chart(), class_="summary"
         )
+        if self._is_foreign and any(row.original for row in review.rows):
+            byline.append(tag("p", self._word("quoted"), class_="byline"))
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
@@ -73,7 +93,8 @@ class Section:
             cells = [tag("td", str(count)) for count in counts]
             lines.append(tag("tr", tag("th", name, scope="row"), *cells, tag("td", *bars, class_="bar")))
         caption = tag("caption", self._word("chart"))
-        return tag("table", caption, tag("thead", head), tag("tbody", *lines), class_="chart")
+        table = tag("table", caption, tag("thead", head), tag("tbody", *lines), class_="chart")
+        return Markup(table + tag("p", tag("small", self._review.held)) if self._review.held else table)
 
     def users(self, address: str) -> list[Markup]:
         """Return links to the rows that are compared with a derived expression."""
@@ -114,15 +135,22 @@ class Section:
         printed = Markup() if row.kind == "claim" else self._printed(row)
         beside = bool(printed and right and row.by_formula)
         stands = tag("small", f" ({self._review.placed(where(row))})") if where(row) else Markup()
+        words = "" if row.by_formula else self._review.in_words(row)
         return {
             "says": Markup(self._original(row) + stands) if row.original else Markup(),
-            "about": self._about(row) if row.says and not row.original else "",
+            "about": self._about(row) if row.says and (self._is_foreign or not row.original) else "",
             "printed": "" if beside else printed,
             "in_fact": self._beside(row, printed, derived) if beside else joined(*_formulas(self._review.fact(row))),
-            "measured": joined(*_formulas(self._review.in_words(row), raised)) if measured(row) else "",
+            "measured": joined(*_formulas(words, raised)) if words and measured(row) else "",
+            "tested": self._tested(row) if not words and row.derived else "",
             "chosen": self._review.chosen(row),
             "right": "" if beside else derived,
         }
+
+    def _tested(self, row: Judged) -> Markup:
+        """Return the proposition that was tested as mathematics; empty where it has no usual form."""
+        tex = "" if row.by_formula or row.kind != "claim" else mathematics(flat(row.printed))
+        return scrolled(math(tex, block=True)) if tex else Markup()
 
     def _beside(self, row: Judged, printed: Markup, right: Markup) -> Markup:
         """Return the printed content, the derived one, and their difference, side by side."""
@@ -191,6 +219,7 @@ class Section:
     def _sentence(self, text: str) -> Markup:
         """Return a sentence of the summary, with quotes in their own language and findings as links."""
         quotes = {f'"{row.original}"': row.original for row in self._review.rows if row.original}
+        meant = {f'"{row.original}"': row.says for row in self._review.rows if row.original}
         pattern = "|".join(map(re.escape, sorted(quotes, key=len, reverse=True))) or "(?!)"
         pieces = []
         for k, piece in enumerate(re.split(f"({pattern})", text)):
@@ -198,7 +227,8 @@ class Section:
                 tag("a", f"({part})", href=f"#{self._finding_anchor(int(part))}") if j % 2 else joined(*_formulas(part))
                 for j, part in enumerate(_REASON.split(piece))
             ]
-            pieces += [tag("q", quotes[piece], lang=self._language)] if k % 2 else linked
+            said = self._is_foreign and meant.get(piece, "")
+            pieces += [tag("q", quotes[piece], lang=self._language, title=said or False)] if k % 2 else linked
         return joined(*pieces)
 
     def _verdict(self, row: Judged) -> Markup:
@@ -234,7 +264,26 @@ def _formulas(text: str, written: Callable[[str], str] = with_raised_units) -> I
     """Return a sentence whose formulas, between backquotes, are typeset, and whose other parts are written so."""
     for k, piece in enumerate(_CODE.split(text)):
         tex = formula_tex.inline(piece) if k % 2 else None
-        yield math(tex) if tex else tag("code", piece) if k % 2 else joined(written(piece))
+        if k % 2:
+            yield math(tex) if tex else tag("code", piece)
+        else:
+            yield from _with_bare_formulas(piece, written)
+
+
+def _with_bare_formulas(text: str, written: Callable[[str], str]) -> Iterator[Markup]:
+    """Return words with the products and powers among them typeset, which authors need not put in backquotes."""
+    end = 0
+    for found in _BARE.finditer(text):
+        names = set(re.findall(r"[A-Za-z]\w*", found[0]))
+        alone = found[0] in GREEK
+        if not (alone or _SPECIAL.search(found[0])) or names & _UNITS or not names:
+            continue
+        tex = formula_tex.inline(found[0].replace("^", "**"))
+        if tex:
+            yield joined(written(text[end : found.start()]))
+            yield math(tex)
+            end = found.end()
+    yield joined(written(text[end:]))
 
 
 def _anchors(keys: Iterable[str]) -> Iterator[tuple[str, str]]:
@@ -313,13 +362,20 @@ def _of_record(address: str) -> Derived:
     return Derived(record_.title, f"{formula_tex.symbol(address.rpartition('.')[2])} = {value}")
 
 
+def _with_indices(name: re.Match[str]) -> str:
+    """Return a name such as H_u1_u1 with the variables that it is differentiated by as indices."""
+    variables = name[2].replace("\\", "").split("_")[1:]
+    return rf"{name[1]}_{{{' '.join(map(formula_tex.symbol, variables))}}}"
+
+
 def _tex(derivation: Derivation, address: str, typesetter: Any) -> str:
     from satsym.symbolic.derivation import Equation
     from satsym.symbolic.lookup import addresses as naming
 
     found = naming.resolve(derivation, address)
     if isinstance(found, Equation):
-        return f"{typesetter.tex(found.lhs)} = {typesetter.tex(found.rhs)}"
+        left = _UNSET.sub(_with_indices, typesetter.tex(found.lhs))
+        return f"{left} = {typesetter.tex(found.rhs)}"
     name = address.rpartition(".")[2]
     value = typesetter.tex(found.matrix if isinstance(found, naming.Family) else found)
     return f"{formula_tex.symbol(name)} = {value}"

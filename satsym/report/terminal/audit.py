@@ -112,15 +112,17 @@ def _document(review: Review, rows: bool, code: bool) -> Iterator[str]:
     for weight, group in review.by_weight:
         yield from ("", f"{_INDENT}{texts.get('weights', weight.value)}")
         for number, finding in group:
-            yield from (
-                _in_full(review, number, finding, code) if weight in IN_FULL else _in_brief(review, number, finding)
-            )
+            if rows or weight in IN_FULL:
+                yield from _in_full(review, number, finding, rows, code)
+            else:
+                yield from _in_brief(review, number, finding)
     if review.open:
         listed = ", ".join(items(review.open))
         yield from ("", f"{_INDENT}{texts.get('audit', 'not_judged')}", *_wrapped(f"{listed}.", 2))
     if rows:
+        told = {found.places[0].key for found in review.findings}
         for row in review.rows:
-            yield from _row(review, row, code) if row.verdict not in SILENT else ()
+            yield from _row(review, row, code) if row.verdict not in SILENT and row.key not in told else ()
     elif review.findings:
         command = f"satsym audit {review.ledger.name} --rows"
         yield from ("", *_wrapped(texts.get("audit", "every_row", command=command), 1))
@@ -141,16 +143,19 @@ def _chart(review: Review) -> Iterator[str]:
         lengths[0] = whole - lengths[1] - lengths[2]
         bar = "".join(sign * length for sign, length in zip("#x?", lengths, strict=True))
         yield f"{_INDENT * 2}{name:{widest}} {bar} {text}"
+    yield from _wrapped(review.held, 2) if review.held else ()
 
 
-def _in_full(review: Review, number: int, finding: Finding, code: bool) -> Iterator[str]:
-    """Return a finding with the printed content, the true one, and its consequences."""
+def _in_full(review: Review, number: int, finding: Finding, rows: bool, code: bool) -> Iterator[str]:
+    """Return a finding with the printed content, the true one, and its consequences; among rows, all of its row."""
     row, texts = finding.places[0], review.texts
     stands = f" ({review.placed(where(row))})" if where(row) else ""
     yield from _heading(review.texts, row, f"{number}. {review.places(finding.places)}", stands, 2)
-    yield from _facts(review, row, short=True, code=code)
+    yield from _facts(review, row, short=not rows, code=code)
     if finding.spoiled:
         yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
+    if rows:
+        yield from _wrapped(row.evidence if code else recompute(row)[1], 3)
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
