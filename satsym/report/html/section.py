@@ -28,8 +28,8 @@ from satsym.report.findings.review import (
     recompute,
     where,
 )
-from satsym.report.findings.tested import mathematics
 from satsym.report.html.markup import Markup, joined, math, tag
+from satsym.report.html.tested import mathematics
 from satsym.report.latex import formula_tex
 
 if TYPE_CHECKING:
