@@ -99,7 +99,7 @@ def _entry(node: ast.Subscript) -> str:
         return _plain(f"({named})")
     if isinstance(node.value, ast.Name) and node.value.id == "text":
         raise _Unwritten
-    return f"{_tex(node.value)}_{{{', '.join(_tex(key) for key in keys)}}}"
+    return f"{{{_tex(node.value)}}}_{{{', '.join(_tex(key) for key in keys)}}}"  # x_1 has an index of its own
 
 
 def _worked_out(node: ast.BinOp) -> str:
