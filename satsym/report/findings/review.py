@@ -108,7 +108,7 @@ class Review:
         return counted
 
     @property
-    def held(self) -> str:
+    def items_that_hold(self) -> str:
         """Return which verdicts are among the rows that stand; empty if all of them are confirmed."""
         found = {verdict: self.counts[verdict] for verdict in STANDS if verdict in self.counts}
         if found.keys() <= {"confirmed"}:

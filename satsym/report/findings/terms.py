@@ -23,7 +23,10 @@ _SIGNS = {ast.Add: " + ", ast.Sub: " - ", ast.Mult: " × ", ast.Div: "/", ast.Po
 _BINDING = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.Pow: 3}
 _LONGEST_VALUE = 160
 """Largest number of characters of a computed formula in a sentence."""
-_PHRASES = "gravity order constant least_energy characteristic seen_latitude rates_at end reference start".split()
+_PHRASES = (
+    *("gravity", "order", "constant", "least_energy", "characteristic"),
+    *("seen_latitude", "rates_at", "end", "reference", "start"),
+)
 """Functions with a phrase of their own name in ``[terms]``, whose arguments are filled in."""
 _ARGUMENTS = {"order": 0, "rates_at": 2, "least_energy": 3}
 """Number of arguments that a phrase names; by default one."""

@@ -94,7 +94,9 @@ class Section:
             lines.append(tag("tr", tag("th", name, scope="row"), *cells, tag("td", *bars, class_="bar")))
         caption = tag("caption", self._word("chart"))
         table = tag("table", caption, tag("thead", head), tag("tbody", *lines), class_="chart")
-        return Markup(table + tag("p", tag("small", self._review.held)) if self._review.held else table)
+        return Markup(
+            table + tag("p", tag("small", self._review.items_that_hold)) if self._review.items_that_hold else table
+        )
 
     def users(self, address: str) -> list[Markup]:
         """Return links to the rows that are compared with a derived expression."""

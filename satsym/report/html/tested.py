@@ -15,7 +15,7 @@ _RELATIONS = {
 _FUNCTIONS = {"re": "Re", "im": "Im", "sign": "sgn"}
 _AROUND = {"abs": (r"\left|", r"\right|"), "norm": (r"\left\|", r"\right\|"), "quantity": ("", "")}
 _CONVENTIONS = {"NEAR": r"\varepsilon", "PI": r"\pi", "INFINITY": r"\infty"}
-_MOST = 60
+_MOST_PARTS = 60
 """Largest number of parts of a proposition that is shown as mathematics; longer ones are shown as code only."""
 
 
@@ -27,7 +27,7 @@ def mathematics(proposition: str) -> str:
     """Return a proposition in LaTeX; empty where it is too long or refers to lines of programs."""
     try:
         tree = ast.parse(proposition, mode="eval").body
-        return _tex(tree) if sum(1 for _ in ast.walk(tree)) <= _MOST else ""
+        return _tex(tree) if sum(1 for _ in ast.walk(tree)) <= _MOST_PARTS else ""
     except (_Unwritten, SyntaxError, ValueError, RecursionError, MemoryError):
         return ""
 

@@ -241,7 +241,7 @@ def _facts(scene: Scene) -> list[str]:
 
 ANEW = 100.0
 """Ratio of a residual to the one before above which a new phase of the iteration begins."""
-MOST_DRAWN, FEW = 80, 4
+MOST_DRAWN, FEWEST_DRAWN = 80, 4
 """Largest number of iterations that are drawn, and smallest number of values in the drawn phases."""
 EXACT = 1e-16
 """Smallest displayed value relative to the largest; smaller values are due to rounding."""
@@ -307,7 +307,7 @@ def _last_phases(begun: NDArray[np.intp], residuals: Array) -> int:
     whole = len(residuals)
     if whole <= MOST_DRAWN:
         return 0
-    far = [int(k) for k in begun if k >= whole - MOST_DRAWN and np.isfinite(residuals[k:]).sum() >= FEW]
+    far = [int(k) for k in begun if k >= whole - MOST_DRAWN and np.isfinite(residuals[k:]).sum() >= FEWEST_DRAWN]
     return far[0] if far else whole - MOST_DRAWN
 
 

@@ -143,7 +143,7 @@ def _chart(review: Review) -> Iterator[str]:
         lengths[0] = whole - lengths[1] - lengths[2]
         bar = "".join(sign * length for sign, length in zip("#x?", lengths, strict=True))
         yield f"{_INDENT * 2}{name:{widest}} {bar} {text}"
-    yield from _wrapped(review.held, 2) if review.held else ()
+    yield from _wrapped(review.items_that_hold, 2) if review.items_that_hold else ()
 
 
 def _in_full(review: Review, number: int, finding: Finding, rows: bool, code: bool) -> Iterator[str]:

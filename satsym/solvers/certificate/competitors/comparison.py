@@ -21,7 +21,7 @@ COST_MARGIN = 1e-9
 SAME_COST = 1e-9
 """Relative error of refined costs. Costs that differ by less count as equal."""
 
-FEW, ALIKE = 10, 1e-4
+FEWEST_STARTS, SAME_MOTION = 10, 1e-4
 """Number of starts below which nothing is estimated from their costs; relative difference of costs, some of them from
 coarse meshes, up to which two motions count as the same."""
 
@@ -92,7 +92,8 @@ def unseen(costs: Sequence[float]) -> float:
     """Return the estimated probability that a further start would lead to a motion to which none has led.
 
     It is the share of the starts whose cost no other start has led to (Good, The population frequencies of species and
-    the estimation of population parameters, Biometrika 40, 1953); zero for fewer than ``FEW`` starts, which say little.
+    the estimation of population parameters, Biometrika 40, 1953); zero for fewer than ``FEWEST_STARTS`` starts, which
+    say little.
 
     Parameters
     ----------
@@ -100,9 +101,9 @@ def unseen(costs: Sequence[float]) -> float:
         Costs to which starts have led, NaN for those that were not solved.
     """
     found = np.sort([cost for cost in costs if math.isfinite(cost)])
-    if len(found) < FEW:
+    if len(found) < FEWEST_STARTS:
         return 0.0
-    apart = np.concatenate([[True], np.diff(found) > ALIKE * np.abs(found[1:]), [True]])
+    apart = np.concatenate([[True], np.diff(found) > SAME_MOTION * np.abs(found[1:]), [True]])
     return float((apart[1:] & apart[:-1]).mean())
 
 
