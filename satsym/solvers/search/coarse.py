@@ -27,7 +27,7 @@ from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURAT
 STARTS = 48
 """Maximum number of starts of the direct search."""
 
-ITERATIONS, ASTRAY = 300, 50
+ITERATIONS, ASTRAY = 200, 50
 """Maximum number of iterations of the interior-point code for a start, and for a competitor from a curved path to a
 random final state. The latter need not lead to a solution, and is found soon or hardly ever."""
 

@@ -26,6 +26,14 @@ could be solved 6 met one of these limits first. Programmes that could not be so
 which the limits save 40 %.
 """
 
+SECOND_ATTEMPTS = (
+    "mu_strategy_fallback",
+    "infeasibility_mu_strategy_retry",
+    "infeasibility_perturbed_start_retry",
+    "feral_infeasibility_scaling_retry",
+)
+"""Options of the solver that make it start again after a failure. The search has other starts, which find more."""
+
 SOLVED, ACCEPTED = 0, 1
 """Status codes that the solver returns for a solved and for an acceptably solved programme."""
 
@@ -140,8 +148,8 @@ def solve(
     options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
     options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}
     options["feral_min_par_flops"] = 1e30  # one thread: sums in another order would be another answer
-    if near:
-        options["mu_init"] = 1e-4
+    options |= {"mu_init": 1e-4} if near else {"mu_strategy": "adaptive"}
+    options |= dict.fromkeys(SECOND_ATTEMPTS, "no")
     for name, value in options.items():
         problem.add_option(name, value)
     _WATCHED.append(watched)
