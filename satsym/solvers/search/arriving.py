@@ -103,9 +103,8 @@ class Missing(Programme):
         self.factor = factor
         return super().hessian(w, multipliers, 0.0)
 
-    def _weighed(self, multipliers: Array, factor: float) -> list[tuple[Function, int, Array]]:
-        _, *rows = super()._weighed(multipliers, factor)
-        return [(self._half, self.count, np.array([self.factor])), *rows]
+    def _weighed_at_end(self, factor: float) -> list[tuple[Function, int, Array]]:
+        return [(self._half, self.count, np.array([self.factor]))]
 
 
 def arriving(

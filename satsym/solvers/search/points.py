@@ -1,8 +1,8 @@
 """Values and exact derivatives of rates, costs and constraints at many points, from generated functions.
 
 First derivatives are complex steps through these functions. Second derivatives are complex steps through
-``costate_rate``, which is the derivative of the Hamiltonian with respect to the states, and differences of complex
-steps for the few others.
+``costate_rate`` and ``stationarity``, which are the derivatives of the Hamiltonian with respect to states and controls,
+and differences of complex steps for the few others.
 """
 
 from __future__ import annotations
@@ -115,25 +115,35 @@ class Points:
         found = function(many.reshape(len(y), -1))
         return np.imag(found).reshape(len(found), len(by), y.shape[1]) / STEP
 
-    def _by_states(self, y: Array, mu: Array, weight: Array) -> Array:
-        """Return derivatives (n, M) of mu f + weight L by the states.
+    def _slopes_of_hamiltonian(
+        self, slopes: Callable[..., Array], rows: Sequence[int], y: Array, mu: Array, weight: Array
+    ) -> Array:
+        """Return derivatives (len(rows), M) of mu f + weight L from those of the Hamiltonian L + lam f.
 
-        Weights for fewer than M points are repeated.
+        Parameters
+        ----------
+        slopes
+            Function of t, x, u, lam and p that returns derivatives of the Hamiltonian, of which ``rows`` are used.
+        mu, weight
+            Weights of the rates and of the running cost. Weights for fewer than M points are repeated.
         """
         x, v, t, p = self._parted(y)
         times = y.shape[1] // mu.shape[1]
         lam, weight = np.tile(mu, (1, times)), np.tile(weight, times)
-        model, plain = self.instance.model, bool((weight > 0.0).all())
+        plain = bool((weight > 0.0).all())
         if plain:
             lam = lam / weight
-        total = np.zeros(x.shape, y.dtype)
+        total = np.zeros((len(rows), y.shape[1]), y.dtype)
         for u, share in self.controls.nodes(v):
-            found = np.broadcast_to(model.costate_rate_batch(t, x, u, lam, p), x.shape)
+
+            def found(lam: Array, u: Array = u) -> Array:
+                every = slopes(t, x, u, lam, p)
+                return np.array([np.broadcast_to(every[row], t.shape) for row in rows])
+
             if plain:
-                total -= weight * share * found
-                continue
-            cost = np.broadcast_to(model.costate_rate_batch(t, x, u, np.zeros_like(lam), p), x.shape)
-            total -= share * (found + (weight - 1.0) * cost)
+                total += weight * share * found(lam)
+            else:
+                total += share * (found(lam) + (weight - 1.0) * found(np.zeros_like(lam)))
         return total
 
     def hessian(self, y: Array, mu: Array, weight: Array, eta: Array) -> tuple[Array, Array]:
@@ -153,14 +163,30 @@ class Points:
         def held(z: Array) -> Array:
             return np.sum(self.constraints(z) * np.tile(eta, z.shape[1] // mu.shape[1]), axis=0)[None]
 
+        model, controls = self.instance.model, range(n, n + self.controls.given)
         found = np.zeros((count, count, y.shape[1]))
-        found[:n] = self._spread(self._complex(lambda z: self._by_states(z, mu, weight), y, self._moving))
+
+        def by_states(z: Array) -> Array:
+            return -self._slopes_of_hamiltonian(model.costate_rate_batch, range(n), z, mu, weight)
+
+        found[:n] = self._spread(self._complex(by_states, y, self._moving))
         found[n:, :n] = found[:n, n:].transpose(1, 0, 2)
         others = [place for place in self._moving if place >= n]
-        if self._curved:
-            bent = self._differences(added, y, self._curved, others)
-            found[np.ix_(others, self._curved)] = bent
-            found[np.ix_(self._curved, others)] = bent.transpose(1, 0, 2)
+        steered = [place for place in self._curved if place in controls]
+        if steered:
+            rows = [place - n for place in steered]
+
+            def by_controls(z: Array) -> Array:
+                return self._slopes_of_hamiltonian(model.stationarity_batch, rows, z, mu, weight)
+
+            bent = self._complex(by_controls, y, others)
+            found[np.ix_(steered, others)] = bent
+            found[np.ix_(others, steered)] = bent.transpose(1, 0, 2)
+        if rest := [place for place in self._curved if place not in controls]:
+            kept = [place for place in others if place not in steered]
+            bent = self._differences(added, y, rest, kept)
+            found[np.ix_(kept, rest)] = bent
+            found[np.ix_(rest, kept)] = bent.transpose(1, 0, 2)
         other = self._differences(held, y, range(count)) if len(eta) else np.zeros_like(found)
         return found, other
 

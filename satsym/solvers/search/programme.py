@@ -69,9 +69,10 @@ class Programme(Transcription):
         slopes, cost = self._slopes(w)[-1], self._rates(w)[-1]
         each = self.weights * (np.einsum("lN,lzN->zN", slopes * steps, into) + cost * grown)
         found: Array = np.bincount(places.ravel(), each.ravel(), self.unknowns).astype(float)
-        end = self._at(w, [self.count])
-        into_end, places_end = self._end_into(self.count)
-        found[places_end] += self.points.slopes(self.points.cost, end)[0, :, 0] @ into_end
+        if self.instance.model.spec.has_terminal_cost:
+            into_end, places_end = self._end_into(self.count)
+            slope = self.points.slopes(self.points.cost, self._at(w, [self.count]))[0, :, 0]
+            found[places_end] += slope @ into_end
         return found / self.sizes.cost
 
     def jacobian(self, w: Array) -> Array:
@@ -191,7 +192,9 @@ class Programme(Transcription):
         eta = multipliers[self.kinds["path"].places].reshape(self.count, held).T if held else np.empty((0, self.count))
         second, of_path = self.points.hessian(y, mu, weight, eta)
         gradient = np.einsum("ilN,iN->lN", self._slopes(w), np.concatenate([mu, weight[None]]))
-        block = np.einsum("lmN,lzN,myN->zyN", second * steps + of_path, into, into, optimize=True)
+        each = np.ascontiguousarray(into.transpose(2, 0, 1))
+        block = each.transpose(0, 2, 1) @ (second * steps + of_path).transpose(2, 0, 1) @ each
+        block = block.transpose(1, 2, 0)
         along = np.einsum("lN,lzN->zN", gradient, into)
         block += along[:, None] * grown[None] + grown[:, None] * along[None]
         for number, norm in enumerate(self.controls.norms):
@@ -213,11 +216,15 @@ class Programme(Transcription):
         chosen, target, count = self._merged
         return np.bincount(target, np.concatenate(entries)[chosen], count).astype(float)
 
+    def _weighed_at_end(self, factor: float) -> list[tuple[Function, int, Array]]:
+        """Return the terminal cost as a function of one point, the index of the point, and its weight."""
+        if not self.instance.model.spec.has_terminal_cost:
+            return []
+        return [(self.points.cost, self.count, np.array([factor / self.sizes.cost]))]
+
     def _weighed(self, multipliers: Array, factor: float) -> list[tuple[Function, int, Array]]:
         """Return functions of one point, the index of the point, and their weights in the Lagrangian."""
-        found: list[tuple[Function, int, Array]] = [
-            (self.points.cost, self.count, np.array([factor / self.sizes.cost]))
-        ]
+        found = self._weighed_at_end(factor)
         first = (
             self.kinds["ends"].first if "ends" in self.kinds else self.kinds["way"].first if "way" in self.kinds else 0
         )
