@@ -59,10 +59,17 @@ def field(instance: Instance, active: Active, t: Array, z: Array) -> Array:
     """Return the rates of states and costates, shape (2n, N), under active constraints."""
     if len(active) < 2:
         return one_by_one.field(instance, active[0] if active else one_by_one.NONE, t, z)
+    return field_and_control(instance, active, t, z)[0]
+
+
+def field_and_control(instance: Instance, active: Active, t: Array, z: Array) -> tuple[Array, Array]:
+    """Return the rates of states and costates, shape (2n, N), and the controls, shape (m, N)."""
+    if len(active) < 2:
+        return one_by_one.field_and_control(instance, active[0] if active else one_by_one.NONE, t, z)
     if stationary(instance) and any(order(instance, k) for k in active):
         raise np.linalg.LinAlgError("constraints on states beside others, where H is not quadratic in the controls")
     here = Together(instance, active, t, z)
-    return here.along(here.multipliers)
+    return here.along(here.multipliers), here.control
 
 
 def multipliers(instance: Instance, active: Active, t: Array, z: Array) -> Array:
@@ -145,10 +152,10 @@ class Together:
     @cached_property
     def _holding(self) -> tuple[Array, Array]:
         """Return the control, shape (m, N), and the multipliers of the active control constraints, shape (k, N)."""
-        free = one_by_one.control(self.instance, one_by_one.NONE, self.t, self.z)
         which = self._of_order(0)
         if stationary(self.instance):
             return by_newton(self.instance, tuple(which), self.t, self.z)
+        free = one_by_one.control(self.instance, one_by_one.NONE, self.t, self.z)
         if not which:
             return free, np.zeros((0, len(self.t)))
         effect = self.effects(which)

@@ -51,10 +51,16 @@ def without_bounds(instance: Instance) -> tuple[float, ...]:
 
 def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Return rates of states and costates, (2n, N), on the boundary of a constraint or, for ``NONE``, without one."""
+    if constraint == NONE and not stationary(instance):
+        x, lam = np.split(z, 2)
+        return np.array(instance.model.canonical_batch(t, x, lam, instance.parameters, without_bounds(instance)))
+    return field_and_control(instance, constraint, t, z)[0]
+
+
+def field_and_control(instance: Instance, constraint: int, t: Array, z: Array) -> tuple[Array, Array]:
+    """Return rates of states and costates as :func:`field` does, and the controls, shape (m, N)."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, lam = z[:n], z[n:]
-    if constraint == NONE and not stationary(instance):
-        return np.array(model.canonical_batch(t, x, lam, p, without_bounds(instance)))
     eta: Array | None = None
     if stationary(instance) and holds_control(instance, constraint):  # both at once
         u, (eta,) = by_newton(instance, (constraint,), t, z)
@@ -65,7 +71,7 @@ def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     if constraint != NONE:
         eta = multiplier(instance, constraint, t, z, u) if eta is None else eta
         found[len(x) :] -= eta * gradient(instance, constraint, t, x, u)
-    return found
+    return found, u
 
 
 def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array | None = None) -> Array:

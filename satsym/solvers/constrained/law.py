@@ -16,9 +16,9 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.structure import Active
 
-STEPS, LAST_STEP = 30, 1e-13
-"""Maximum number of Newton steps, and the size of a step, relative to 1 plus the control, below which the iteration
-ends."""
+STEPS, LAST_STEP = 30, 1e-8
+"""Maximum number of Newton steps, and the size of a step, relative to 1 plus the control, below which it is the last:
+the error after it is about the square of its size."""
 
 
 def stationary(instance: Instance) -> bool:
@@ -41,15 +41,13 @@ def by_newton(
     )
     w = np.zeros((m + len(active), count))
     w[:m] = np.broadcast_to(np.asarray(begun), (m, count))
-    slopes: Array = np.empty((count, len(w), len(w)))
     for _ in range(STEPS):
-        slopes = _slopes(instance, active, times, places, w)
-        step = _solved(slopes, _conditions(instance, active, times, places, w))
+        step = _solved(_slopes(instance, active, times, places, w), _conditions(instance, active, times, places, w))
         w = w - step
         if not (np.abs(step[:m]) > LAST_STEP * (1.0 + np.abs(w[:m]))).any():
             break
     if np.iscomplexobj(t) or np.iscomplexobj(z):
-        w = w - _solved(slopes, _conditions(instance, active, t, z, w))
+        w = w - _solved(_slopes(instance, active, times, places, w), _conditions(instance, active, t, z, w))
     return w[:m], w[m:]
 
 

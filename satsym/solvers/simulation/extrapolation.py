@@ -17,7 +17,7 @@ import numpy as np
 
 from satsym.arrays import Array
 
-Rates = Callable[[float, Array], Array]
+Rates = Callable[[Any, Array], Array]
 
 SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
 """Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
@@ -50,7 +50,13 @@ class Trajectory:
 
 
 def integrate(
-    rates: Rates, times: Array, start: Array, tolerance: float, size: Array, first: float = 0.25
+    rates: Rates,
+    times: Array,
+    start: Array,
+    tolerance: float,
+    size: Array,
+    first: float = 0.25,
+    together: bool = False,
 ) -> list[Trajectory]:
     """Integrate y' = rates(t, y) through given times, at each of which a step ends, as is needed at corners.
 
@@ -68,6 +74,9 @@ def integrate(
         Typical magnitudes of the components, shape (d,).
     first
         Length of the first step that is tried, as a fraction of the first piece.
+    together
+        Whether ``rates`` takes times (M,) and values (d, M) and returns rates (d, M). Several columns of the
+        extrapolation table are then computed simultaneously, which is faster if each call has a high fixed cost.
 
     Returns
     -------
@@ -82,7 +91,7 @@ def integrate(
     pieces, value = [], np.asarray(start, dtype=float)
     step = first * float(times[1] - times[0])
     for begin, end in pairwise(times):
-        piece, step = _piece(rates, float(begin), float(end), value, step, tolerance, size)
+        piece, step = _piece(rates, float(begin), float(end), value, step, tolerance, size, together)
         pieces.append(piece)
         value = piece.end
     return pieces
@@ -189,6 +198,18 @@ def leaps(
         Number of columns that are computed simultaneously, which is faster for few initial values, because rates are
         evaluated at more points at a time.
     """
+    table: list[Array] = []
+    for k, (count, column) in enumerate(zip(SUBSTEPS, _columns(rates, t, y, h, together), strict=True)):
+        row = [column]
+        for j in range(k):
+            ratio = (count / SUBSTEPS[k - j - 1]) ** 2
+            row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
+        table = row
+        yield row[-1], np.abs(row[-1] - row[-2]) if k else np.full_like(y, np.inf)
+
+
+def _columns(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, together: int) -> Iterator[Array]:
+    """Yield the midpoint values (d, M) of each column of the table; the first columns are computed simultaneously."""
     slope = rates(t, y)
     first: Sequence[Array] = ()
     if together > 1:
@@ -200,20 +221,14 @@ def leaps(
             return np.ascontiguousarray(found.reshape(values.shape).transpose(1, 0, 2))
 
         first = _midpoints(every, np.broadcast_to(y, (together, *y.shape)), width * slope, width)
-    table: list[Array] = []
-    for k, count in enumerate(SUBSTEPS):
-        row = [first[k] if k < len(first) else _midpoint(rates, t, y, slope, h, count)]
-        for j in range(k):
-            ratio = (count / SUBSTEPS[k - j - 1]) ** 2
-            row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
-        table = row
-        yield row[-1], np.abs(row[-1] - row[-2]) if k else np.full_like(y, np.inf)
+    yield from first
+    yield from (_midpoint(rates, t, y, slope, h, count) for count in SUBSTEPS[len(first) :])
 
 
 def _piece(
-    rates: Rates, begin: float, end: float, value: Array, step: float, tolerance: float, size: Array
+    rates: Rates, begin: float, end: float, value: Array, step: float, tolerance: float, size: Array, together: bool
 ) -> tuple[Trajectory, float]:
-    at, times, values, most = begin, [begin], [value], 1
+    at, times, values, most, column = begin, [begin], [value], 1, len(SUBSTEPS) // 2
     step = np.copysign(min(abs(step), abs(end - begin)), end - begin)
     for _ in range(MOST_STEPS):
         left = end - at
@@ -221,7 +236,8 @@ def _piece(
             return Trajectory(np.array(times), np.array(values), most), float(step)
         last = abs(step) >= abs(left) * (1.0 - 1e-12)
         h = left if last else step
-        reached, error, column = _extrapolated(rates, at, values[-1], h, tolerance, size)
+        ahead = column + 1 if together else 0
+        reached, error, column = _extrapolated(rates, at, values[-1], h, tolerance, size, ahead)
         if error <= 1.0:
             at = end if last else at + h
             times.append(at)
@@ -236,14 +252,25 @@ def _piece(
 
 
 def _extrapolated(
-    rates: Rates, t: float, y: Array, h: float, tolerance: float, size: Array
+    rates: Rates, t: float, y: Array, h: float, tolerance: float, size: Array, ahead: int = 0
 ) -> tuple[Array, float, int]:
-    """Return one extrapolated step, its error in units of the tolerance, and the column that was reached."""
+    """Return one extrapolated step, its error in units of the tolerance, and the column that was reached.
+
+    Parameters
+    ----------
+    ahead
+        Number of columns that are computed simultaneously by rates for many points; 0 for rates of one point.
+    """
+    columns: Iterator[Array]
+    if ahead:
+        columns = (column[:, 0] for column in _columns(rates, np.array([t]), y[:, None], np.array([h]), ahead))
+    else:
+        slope = rates(t, y)
+        columns = (_midpoint(rates, t, y, slope, h, count) for count in SUBSTEPS)
     table: list[Array] = []
-    slope = rates(t, y)
     error, best = float("inf"), y
-    for k, count in enumerate(SUBSTEPS):
-        row = [_midpoint(rates, t, y, slope, h, count)]
+    for k, (count, column) in enumerate(zip(SUBSTEPS, columns, strict=True)):
+        row = [column]
         for j in range(k):
             ratio = (count / SUBSTEPS[k - j - 1]) ** 2
             row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))

@@ -34,10 +34,14 @@ class BoundaryField(Field):
         return self.instance.control_set.saturated(self.control(t, z)).arguments
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
-        found = tuple(self.controls(np.array([t]), np.array(z)[:, None])[:, 0].tolist())
-        if not abs(found[self.acting] - self.middle) <= self.beyond:
+        found = self.controls(np.array([t]), np.array(z)[:, None])
+        self._refuse_beyond(found)
+        return tuple(found[:, 0].tolist())
+
+    def _refuse_beyond(self, u: Array) -> None:
+        """Raise an error if the control on the boundary, (m, N), is far beyond its bounds at some point."""
+        if not (np.abs(u[self.acting] - self.middle) <= self.beyond).all():
             raise ArithmeticError("the control on the boundary leaves its bounds for good")
-        return found
 
     def controls(self, t: NDArray[Any], z: NDArray[Any]) -> NDArray[Any]:
         """Return the controls at many points, shape (m, N)."""
@@ -73,9 +77,17 @@ class BoundaryField(Field):
         return u, found
 
     def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
-        moved = np.array(z)[:, None] + 1j * NUDGE * np.eye(len(z))
-        slopes = self.along(np.full(len(z), t), moved)[1].imag / NUDGE
-        return np.array(self.rates(t, z)), slopes
+        rates, slopes = self.linearised_along(np.array([t]), np.array(z)[:, None])
+        return rates[:, 0], slopes[0]
+
+    def linearised_along(self, t: Array, z: Array) -> tuple[Array, Array]:
+        """Return rates (2n, N) at many points, and their derivatives with respect to z, shape (N, 2n, 2n)."""
+        rows, count = z.shape
+        moved = z[:, None] + 1j * NUDGE * np.eye(rows)[:, :, None]
+        slopes = self.along(np.tile(t, rows), moved.reshape(rows, -1))[1].imag / NUDGE
+        u, found = self.along(t, z)
+        self._refuse_beyond(u)
+        return found, slopes.reshape(rows, rows, count).transpose(2, 0, 1)
 
 
 def off_boundary(

@@ -13,7 +13,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
-from satsym.solvers.switching.boundary import pushed
+from satsym.solvers.switching.boundary import BoundaryField, pushed
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import Event, Structure
 from satsym.solvers.switching.throttled import equations
@@ -222,7 +222,18 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
 
     values = np.concatenate([z, np.eye(rows).ravel()])
     scale = np.concatenate([sizes, ROUGHLY * np.outer(sizes, 1.0 / sizes).ravel()])
-    found = integrate(both, through, values, tolerance, scale, WHOLE)[-1].end
+    if isinstance(field, BoundaryField):
+        on_boundary = field
+
+        def both_along(t: Array, y: Array) -> Array:
+            counted()
+            now, slopes = on_boundary.linearised_along(t, y[:rows])
+            moved = slopes @ y[rows:].reshape(rows, rows, -1).transpose(2, 0, 1)
+            return np.concatenate([now, moved.transpose(1, 2, 0).reshape(rows * rows, -1)])
+
+        found = integrate(both_along, through, values, tolerance, scale, WHOLE, together=True)[-1].end
+    else:
+        found = integrate(both, through, values, tolerance, scale, WHOLE)[-1].end
     return found[:rows], found[rows:].reshape(rows, rows)
 
 

@@ -6,7 +6,6 @@ expression of the multiplier.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,7 +17,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, typical
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.active import control, field
+from satsym.solvers.constrained.active import field_and_control
 from satsym.solvers.constrained.arcs import conditions, gradient
 from satsym.solvers.constrained.structure import Active, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
@@ -216,13 +215,13 @@ def _piece(
 
     def rates(t: Array, y: Array) -> Array:
         z = y[:-1]
-        u = control(instance, active, t, z)
+        along, u = field_and_control(instance, active, t, z)
         cost = np.broadcast_to(model.running_cost_batch(t, z[:n], u, p), t.shape)
-        return np.concatenate([field(instance, active, t, z), cost[None]])
+        return np.concatenate([along, cost[None]])
 
     scale = np.append(sizes, sizes[:n] @ sizes[n:])
-    one = _single(rates)
-    (found,) = integrate(one, np.array([nodes[0], nodes[-1]]), np.append(start, 0.0), TOLERANCE, scale)
+    ends = np.array([nodes[0], nodes[-1]])
+    (found,) = integrate(rates, ends, np.append(start, 0.0), TOLERANCE, scale, together=True)
     inner = nodes[:-1, None] + np.diff(nodes)[:, None] * np.arange(1, BETWEEN + 1) / BETWEEN
     wanted = np.concatenate([[nodes[0]], inner.ravel()])
     step = np.clip(np.searchsorted(found.times, wanted, side="right") - 1, 0, len(found.times) - 2)
@@ -230,8 +229,3 @@ def _piece(
     values[:, -1] = found.end
     piece = Piece(active, place, values[:-1, ::BETWEEN], wanted, values[:-1])
     return piece, float(found.end[-1])
-
-
-def _single(rates: Callable[[Array, Array], Array]) -> Callable[[float, Array], Array]:
-    """Return a function of one time and one vector from rates for arrays of times."""
-    return lambda t, y: rates(np.array([t]), y[:, None])[:, 0]
