@@ -166,7 +166,7 @@ def test_a_verdict_says_what_it_claims(verdict: Verdict, solved: int, maximise: 
     found = Certificate(verdict, 0.0, 0.0, 0.0, 0.0, 1.0, None, (), compared)
     assert verdict_text(found, maximise) == said
     missing = replace(found, not_checked=(Kind.REVOLUTIONS,))
-    assert verdict_text(missing, maximise) == f"{said}; not compared: revolutions"
+    assert verdict_text(missing, maximise) == f"{said}; not compared: other numbers of revolutions"
 
 
 def test_subjects_list_nothing_that_is_not_shipped_and_nothing_twice() -> None:

@@ -53,11 +53,12 @@ def page(cases: Sequence[Case]) -> Figure | None:
     panels += [(variable, apart) for variable in shared if (apart := _differences(answered, variable))]
     law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
     columns = style.across(2)
+    several = len(answered) > 1
     below = -(-len(panels) // columns)
     pairs = 2 // columns
-    rows = below + pairs * (1 + (law is not None))
-    driven = all(case.instance.driven for case in cases)
-    title = cases[0].instance.title if driven else say("comparison of <number> instances", number=len(cases))
+    rows = below + pairs * (several + (law is not None))
+    own = len(cases) == 1 or all(case.instance.driven for case in cases)
+    title = cases[0].instance.title if own else say("comparison of <number> instances", number=len(cases))
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, columns)
     measures = _measures(answered, panels)
@@ -65,10 +66,11 @@ def page(cases: Sequence[Case]) -> Figure | None:
         last = k == len(panels) - 1 and k % columns == 0
         place = grid[k // columns, :] if last else grid[k // columns, k % columns]
         _over_time(figure.add_subplot(place), answered, variable, apart, measures[k])
-    totals = [figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)]
-    _totals(totals, answered, style.room(figure, columns))
+    lower = [figure.add_subplot(grid[below + k // columns, k % columns]) for k in range((rows - below) * columns)]
+    if several:
+        _totals(lower[:2], answered, style.room(figure, columns))
     if law is not None:
-        _range([figure.add_subplot(grid[below + pairs + k // columns, k % columns]) for k in range(2)], law)
+        _range(lower[-2:], law)
     entries = [
         (legend.line(color=COLOURS[k % 6], linestyle=DASHES[k % 6], linewidth=2.0), case.instance.name)
         for k, case in enumerate(answered)
@@ -169,6 +171,8 @@ def _over_time(
                     "xytext": (0.0, 0.0),
                 }
                 axes.annotate("", arrowprops=look, annotation_clip=False, zorder=4.0, **ends)
+                axes.update_datalim([ends["xy"]])
+        axes.autoscale_view()
         of = display.unit_text(unit_of(cases, "impulse"))
         said = [
             say("<name> begins with an impulse of <size>", name=name, size=f"{decimal(f'{impulse:.3g}')} {of}".rstrip())
@@ -214,7 +218,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case], room: float) -> None:
                 settled = say("settled to within <share> after <time>", time=said, share=f"{SETTLING_BAND:.0%}")
                 said = settled if np.isfinite(value) else say("not settled")
             # the text beside a bar is inside the axes, too
-            far.append(float(np.nan_to_num(value)) / (1.0 - min(0.7, (style.length(said, 9.0) + 0.15) / room)))
+            far.append(float(np.nan_to_num(value)) / (1.0 - min(0.8, (style.length(said, 9.0) + 0.15) / room)))
             axes.text(
                 np.nan_to_num(value),
                 place,

@@ -6,7 +6,7 @@ import re
 
 from satsym.report.said import each, message, say
 from satsym.report.terminal.table import figure, table, wrapped
-from satsym.solution import Certificate, Check
+from satsym.solution import Certificate, Check, Kind
 from satsym.spec import ProblemSpec
 from satsym.status import Scope, Verdict
 
@@ -118,6 +118,19 @@ _NAMED = {
         "transversality condition at the initial time holds: <said_kind>"
     ),
 }
+
+_MISSING = {
+    Kind.NEIGHBOURS: "neighbouring motions",
+    Kind.REVOLUTIONS: "other numbers of revolutions",
+    Kind.DURATIONS: "other durations",
+    Kind.STARTS: "motions from other starts",
+    Kind.FURTHER: "motions from further starts",
+    Kind.ARCS: "other sequences of boundary arcs",
+    Kind.TIMES: "other times at waypoints",
+    Kind.ENDS: "other limits of the final state",
+    Kind.UNKNOWNS: "other values of the free quantities",
+}
+"""What a solution was not compared with, by the kind of competitor that is missing."""
 """Patterns of checks whose names contain a name -> what is true if they pass."""
 
 _MEANINGS = {
@@ -196,7 +209,7 @@ def verdict_text(certificate: Certificate, maximise: bool = False) -> str:
         )
         words = f"{words}; {say(one) if solved == 1 else say(many, number=solved)}"
     text = f"{message(certificate.verdict.value)} ({words})"
-    missing = ", ".join(message(kind.value) for kind in certificate.not_checked)
+    missing = ", ".join(say(_MISSING[kind]) for kind in certificate.not_checked)
     return say("<verdict>; not compared: <kinds>", verdict=text, kinds=missing) if missing else text
 
 
