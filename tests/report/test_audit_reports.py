@@ -203,6 +203,11 @@ def test_text_is_escaped_unless_it_is_markup() -> None:
     assert joined("<", Markup("<br>"), by="|") == "&lt;|<br>"
 
 
+@pytest.mark.parametrize("formula", ["a_b_c", r"\left( x", "x^"])
+def test_a_formula_that_cannot_be_converted_is_shown_as_code(formula: str) -> None:
+    assert math(formula) == tag("code", formula)
+
+
 def test_mathematics_is_read_as_it_is_written() -> None:
     assert "<mtext>max</mtext>" in math(r"u_{\mathrm{max}}")
     assert re.search(r'<mo form="prefix">.</mo>', math(r"x = -\frac{1}{2}"))

@@ -45,12 +45,20 @@ _OPERATOR = re.compile(r"\\operatorname\{([^{}\\]*)\}")
 
 @cache
 def math(tex: str, *, block: bool = False) -> Markup:
-    """Return a formula; names of several letters are set as words."""
+    """Return a formula; names of several letters are set as words.
+
+    A formula that the converter cannot read is shown as its LaTeX code.
+    """
+    from latex2mathml import exceptions
     from latex2mathml.converter import convert_to_element
 
+    refusals = tuple(one for one in vars(exceptions).values() if isinstance(one, type) and issubclass(one, Exception))
     plain = _OPERATOR.sub(r"\\text{\1}\\,", _UPRIGHT.sub(r"\\text{\1}", tex))
     plain = _BRACKET.sub(lambda side: r"\left" if side[1] == "l" else r"\right", plain)
-    element = convert_to_element(plain, display="block" if block else "inline")
+    try:
+        element = convert_to_element(plain, display="block" if block else "inline")
+    except (*refusals, IndexError, ValueError):
+        return tag("code", tex)
     element.attrib.pop("xmlns", None)
     for part in element.iter():
         # characters come as references; serialising escapes whatever they stand for

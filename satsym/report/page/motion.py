@@ -41,8 +41,8 @@ EDGES = [
 
 GRID = 81
 """Number of points along each side of the grid on which forbidden regions are computed."""
-TOLD = ("reference", "other", "met", "free", "burns", "target", "passed")
-"""What the description says of a picture that has it, beside the path."""
+CAPTIONED = ("reference", "other", "met", "free", "burns", "target", "passed")
+"""Parts of a picture that its caption explains where they are drawn; the path is always explained."""
 MARKED = {"target": "9", "passed": "5"}
 """Radii of the marks of the final condition, and of waypoints."""
 
@@ -81,11 +81,11 @@ def motion(scene: Scene, texts: Texts, driven: bool = False) -> Markup:
     walls = [one.in_plane for one in around.forbidden if one.in_plane is not None and view.shape == (2, 2)]
     fields = [lambda seen, wall=wall: wall(view.T @ seen) for wall in walls]
     inside = _moving(seen, moving, orbit.central, marked, fields)
-    told = ["path", *(name for name in TOLD if name in seen or name in moving or name in marked)]
+    captions = ["path", *(name for name in CAPTIONED if name in seen or name in moving or name in marked)]
     if marked.get("passed", np.zeros((2, 1))).shape[1] > 1:
-        told[told.index("passed")] = "passed_many"
-    told += ["inside"] if fields else []
-    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in told], driven)
+        captions[captions.index("passed")] = "passed_many"
+    captions += ["inside"] if fields else []
+    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in captions], driven)
 
 
 def _from_reference(scene: Scene, orbit: Orbit, texts: Texts, driven: bool) -> Markup | None:
@@ -99,8 +99,8 @@ def _from_reference(scene: Scene, orbit: Orbit, texts: Texts, driven: bool) -> M
     if np.abs(curves["path"]).max() >= UNSEEN * np.linalg.norm(orbit.reference, axis=0).max():
         return None
     inside = _moving(curves, {"path": (scene.nodes[known], curves["path"])}, True)
-    told = ["seen", "path", *(["free"] if "free" in curves else [])]
-    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in told], driven)
+    captions = ["seen", "path", *(["free"] if "free" in curves else [])]
+    return _figure(scene, inside, texts, "motion", [texts.get("page", f"motion_{name}") for name in captions], driven)
 
 
 def _moving(
