@@ -168,7 +168,7 @@ def test_with_bounded_pressure_goddards_rocket_keeps_to_the_bound_until_it_follo
         ("entry", pytest.approx(times[0], rel=1e-8)),
         ("exit", pytest.approx(times[1], rel=1e-8)),
     ]
-    assert failed(found) == ["no proof of a minimum along singular arcs: the problem is not convex"]
+    assert not failed(found)
 
 
 @pytest.mark.slow
@@ -205,7 +205,7 @@ def test_goddards_rocket_agrees_with_events_alone():
     assert -found.objective == pytest.approx(y[0], rel=1e-11)
     assert y[0] == pytest.approx(1.01284, abs=5e-6)
     assert (*found.switching_times[0], found.times[-1]) == pytest.approx(times, rel=1e-8)
-    assert failed(found) == ["no proof of a minimum along singular arcs: the problem is not convex"]
+    assert not failed(found)
 
 
 PLACE = tuple(Variable(name, name) for name in ("x", "y", "vx", "vy"))

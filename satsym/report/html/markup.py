@@ -52,12 +52,13 @@ def math(tex: str, *, block: bool = False) -> Markup:
     from latex2mathml import exceptions
     from latex2mathml.converter import convert_to_element
 
-    refusals = tuple(one for one in vars(exceptions).values() if isinstance(one, type) and issubclass(one, Exception))
+    named = (one for one in vars(exceptions).values() if isinstance(one, type) and issubclass(one, Exception))
+    refusals: tuple[type[Exception], ...] = (*named, IndexError, ValueError)
     plain = _OPERATOR.sub(r"\\text{\1}\\,", _UPRIGHT.sub(r"\\text{\1}", tex))
     plain = _BRACKET.sub(lambda side: r"\left" if side[1] == "l" else r"\right", plain)
     try:
         element = convert_to_element(plain, display="block" if block else "inline")
-    except (*refusals, IndexError, ValueError):
+    except refusals:
         return tag("code", tex)
     element.attrib.pop("xmlns", None)
     for part in element.iter():

@@ -148,7 +148,9 @@ def solve(
     options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
     options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}
     options["feral_min_par_flops"] = 1e30  # one thread: sums in another order would be another answer
-    options |= {"mu_init": 1e-4} if near else {"mu_strategy": "adaptive"}
+    options["mu_strategy"] = "adaptive"
+    if near:
+        options["mu_init"] = 1e-4
     options |= dict.fromkeys(SECOND_ATTEMPTS, "no")
     for name, value in options.items():
         problem.add_option(name, value)

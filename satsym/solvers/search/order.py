@@ -37,7 +37,8 @@ then. After DOUBTFUL of them the search asks whether any motion reaches the end.
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
 """The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
-cost that was found. Where ends are drawn, or path constraints separate the ways, it ends after PATIENCE in a row."""
+cost that was found; those that are not solved count half. Where ends are drawn, or path constraints separate the ways,
+it ends after PATIENCE in a row, solved or not."""
 
 SOON = 25_000
 """Unknowns times iterations that the list of competitors takes at least, because starts of small programmes cost
@@ -156,14 +157,14 @@ def _further(
     """Competitors from the starts that were not tried yet."""
     seen, first = past.seen, len(past.tried)
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
-    quiet, solved, begun = 0, 0, (spent := limits.meter.spent)
+    quiet, solved, begun = 0.0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or ends.random(instance), AROUND if constrained else PROBE
     for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.first, first=first), first):
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
         else:
-            quiet, solved = quiet + 1, solved + found.solved
+            quiet, solved = quiet + (1.0 if found.solved or patient else 0.5), solved + found.solved
         if not found.solved:
             yield Tried(plan, float("nan"))
         elif abs(found.objective - cost) <= hidden:
@@ -178,7 +179,7 @@ def _further(
         elif (known := next((came for coarse, came in seen if same(found.objective, coarse)), None)) is not None:
             yield Tried(plan, known)
         else:
-            quiet = 0
+            quiet = 0.0
             came, answer, unsettled = followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             unsettled &= not constrained  # with constraints it steps over one, mostly
@@ -188,7 +189,8 @@ def _further(
         further = plan.turns is not None or plan.timed or plan.arriving
         known = _distinct(came for _, came in seen)
         alone = known == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
-        enough = (PATIENCE if patient else QUIET + FURTHER * (known - 1)) if seen else FAILING
+        failing = FAILING if patient else FAILING / 2
+        enough = (PATIENCE if patient else QUIET + FURTHER * (known - 1)) if seen else failing
         done = alone or (quiet >= enough and limits.meter.spent - begun > SOON)
         if done or number + 1 >= STARTS or limits.expired:
             break
