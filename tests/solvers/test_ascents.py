@@ -161,5 +161,5 @@ def test_little_time_to_spare_makes_a_short_coast_and_less_than_the_least_is_inf
     assert found.switching_times[0] == pytest.approx(switches, abs=1e-8)
     hurried = solve(replace(case, tf=0.38))
     assert hurried.status is Status.INFEASIBLE, hurried.message
-    assert "the nearest of 8 local searches misses" in hurried.message
+    assert "the best of 8 local searches misses" in hurried.message
     assert np.isnan(hurried.x).all()
