@@ -29,11 +29,12 @@ FINER, SETTLED_COST, SMOOTHINGS = 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
 change of the cost between meshes below which refinement ends; ``SMOOTHINGS`` are the smoothing parameters of norms on
 each finer mesh."""
 
-FALLING, RESOLVED, LOST, UNCERTAIN = 1e-2, 1e-2, 50.0, 10.0
-"""A motion that costs more than an answer is refined as long as each mesh lowers its cost by the fraction ``FALLING``,
-unless the residual on its coarse mesh, relative to the magnitudes of states, is at most ``RESOLVED``. A motion whose
-residual exceeds ``LOST`` on a finer mesh is not refined: it steps over a singularity, such as the centre of a planet.
-The error of a cost is estimated as ``UNCERTAIN`` times its last change."""
+RESOLVED, LOST, UNCERTAIN = 1e-2, 50.0, 10.0
+"""A motion that costs more than an answer is refined unless the residual on its coarse mesh, relative to the magnitudes
+of states, is at most ``RESOLVED``, and as long as its cost would come down to that of the answer if each of the meshes
+that are left lowered it as much as the last one did. A motion whose residual exceeds ``LOST`` on a finer mesh is not
+refined: it steps over a singularity, such as the centre of a planet. The error of a cost is estimated as ``UNCERTAIN``
+times its last change."""
 
 
 def part(limits: Limits) -> Limits:
@@ -46,7 +47,7 @@ def followed(
 ) -> tuple[float, Answer | None, bool]:
     """Return the refined cost of a motion from a coarse mesh, and an extremal near it if it seems cheaper.
 
-    A motion that costs more than the answer is refined as long as finer meshes lower its cost much. One that costs
+    A motion that costs more than the answer is refined as long as finer meshes lower its cost enough. One that costs
     less, with a cost that hardly changes on finer meshes, is cheaper even if no extremal is found near it.
 
     Returns
@@ -61,9 +62,9 @@ def followed(
     """
     margin, costs, last = SIMILAR * abs(cost), list[float](), found
     meshes, _ = refined(found)
-    for last in finer(found, part(limits)):
+    for left, last in zip(range(len(SMOOTHINGS), -1, -1), finer(found, part(limits)), strict=False):
         at, residual = motion(last), refined(last)[1]
-        falling = at.cost < costs[-1] - FALLING * abs(costs[-1]) if costs else residual > RESOLVED
+        falling = (costs[-1] - at.cost) * left >= at.cost - cost if costs else residual > RESOLVED
         costs.append(at.cost)
         if at.cost < cost - margin:
             answer = exact(at) if residual <= LOST else None
