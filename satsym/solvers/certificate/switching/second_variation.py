@@ -17,7 +17,7 @@ from satsym.solvers.switching.boundary import BoundaryField, off_boundary
 from satsym.solvers.switching.field import NUDGE, Field
 from satsym.solvers.switching.throttled import ThrottledField
 
-PIECES, MOST_PIECES, STEPS_PER_PIECE, FEWEST_STEPS = 20, 320, 12, 4
+PIECES, MOST_PIECES, STEPS_PER_PIECE, FEWEST_STEPS = 20, 160, 12, 4
 """First and maximum number of pieces, over all arcs, on which variations of the continuous controls are constant.
 Number of classical Runge-Kutta steps in each piece, and minimum number in an arc."""
 
