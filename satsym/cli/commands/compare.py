@@ -50,8 +50,6 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
     from satsym.report.terminal.comparison import comparison_object, comparison_text
     from satsym.report.terminal.solution import with_files
 
-    if len(subjects) < 2 and not ranged:
-        raise click.UsageError("Give at least two instances, or --range; `satsym solve X` solves a single one.")
     loaded = [instance.load(subject) for subject in subjects]
     folder = folder_for(loaded[0].name, "compare", out, look)
     over = _range(loaded[0]) if ranged else None
