@@ -26,13 +26,16 @@ could be solved 6 met one of these limits first. Programmes that could not be so
 which the limits save 40 %.
 """
 
+FALLBACK = "mu_strategy_fallback"
 SECOND_ATTEMPTS = (
-    "mu_strategy_fallback",
+    FALLBACK,
     "infeasibility_mu_strategy_retry",
     "infeasibility_perturbed_start_retry",
     "feral_infeasibility_scaling_retry",
 )
-"""Options of the solver that make it start again after a failure. The search has other starts, which find more."""
+"""Options of the solver that make it start again after a failure, the first one with the other strategy for the barrier
+parameter. Near a solution, the monotone strategy comes first and the adaptive one second. Elsewhere only the adaptive
+one is tried, because the search has other starts, which find more."""
 
 SOLVED, ACCEPTED = 0, 1
 """Status codes that the solver returns for a solved and for an acceptably solved programme."""
@@ -148,10 +151,11 @@ def solve(
     options = {"print_level": 0, "sb": "yes", "max_iter": most, "tol": TOLERANCE}
     options |= {"acceptable_tol": ACCEPTABLE, "acceptable_iter": 8}
     options["feral_min_par_flops"] = 1e30  # one thread: sums in another order would be another answer
-    options["mu_strategy"] = "adaptive"
-    if near:
-        options["mu_init"] = 1e-4
     options |= dict.fromkeys(SECOND_ATTEMPTS, "no")
+    if near:
+        options |= {"mu_init": 1e-4, FALLBACK: "yes"}
+    else:
+        options["mu_strategy"] = "adaptive"
     for name, value in options.items():
         problem.add_option(name, value)
     _WATCHED.append(watched)
