@@ -60,6 +60,7 @@ def bounced(wall: float) -> float:
 
 @settings(max_examples=6, deadline=None)
 @given(st.integers(8, 24), st.integers(8, 24))
+@example(8, 8)
 @example(8, 9)  # here a touch point of one wall, and an arc on it, were found with a free arc that lies on the wall
 @pytest.mark.slow
 def test_in_a_corner_each_wall_costs_what_it_costs_alone(right: int, top: int):

@@ -37,7 +37,7 @@ BESIDE = 0.05
 
 def wrong(arcs: Arcs) -> tuple[str, list[Structure]]:
     """Return why arcs are no extremal of the problem (empty if they are one), and structures to try instead."""
-    flaws = (_disordered, _pulling, _resting, _violated, _rising, _pulling_along)
+    flaws = (_disordered, _pulling, _violated, _rising, _pulling_along)
     return next((found for found in (flaw(arcs) for flaw in flaws) if found is not None), ("", []))
 
 
@@ -198,22 +198,6 @@ def _jumps(arcs: Arcs) -> list[tuple[int, int, float]]:
     return [(k, which, arcs.jump(k, which)) for k, one in met for which, _ in one.jumps]
 
 
-def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Find contacts between which their constraint stays active, so that they form one arc with zero multipliers.
-
-    Control constraints are left out: a bound that the law reaches by itself is no arc (:func:`without_idle`).
-    """
-    known, room = contacts(arcs), sizes(arcs)
-    for constraint in sorted({one.constraint for one in known}):
-        if _order(arcs, constraint) == 0:
-            continue
-        own = [k for k, one in enumerate(known) if one.constraint == constraint]
-        for j, k in pairwise(own):
-            if np.abs(_between(arcs, constraint, known[j].end, known[k].start)).max() < SLACK * room[constraint]:
-                return "a free arc lies on a boundary", [_instead(arcs, (j, k), _one_contact(known[j], known[k]))]
-    return None
-
-
 def _one_contact(first: Contact, second: Contact) -> Contact:
     """Return one contact that extends from the start of a contact to the end of a later one."""
     jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
@@ -320,7 +304,28 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     return None
 
 
-def without_idle(arcs: Arcs) -> Structure | None:
+def simpler(arcs: Arcs) -> list[Structure]:
+    """Return structures without superfluous junctions, whose times nothing determines; they need not be extremals."""
+    return [one for one in (_without_idle(arcs), _without_gap(arcs)) if one is not None]
+
+
+def _without_gap(arcs: Arcs) -> Structure | None:
+    """Return the structure with two contacts joined to one arc if their constraint stays active between them.
+
+    Control constraints are left out: a bound that the law reaches by itself is no arc (:func:`_without_idle`).
+    """
+    known, room = contacts(arcs), sizes(arcs)
+    for constraint in sorted({one.constraint for one in known}):
+        if _order(arcs, constraint) == 0:
+            continue
+        own = [k for k, one in enumerate(known) if one.constraint == constraint]
+        for j, k in pairwise(own):
+            if np.abs(_between(arcs, constraint, known[j].end, known[k].start)).max() < SLACK * room[constraint]:
+                return _instead(arcs, (j, k), _one_contact(known[j], known[k]))
+    return None
+
+
+def _without_idle(arcs: Arcs) -> Structure | None:
     """Return the structure without superfluous arcs of control constraints; ``None`` if it has none.
 
     The multiplier of such an arc vanishes because the law keeps the constraint by itself, so its ends are undetermined.

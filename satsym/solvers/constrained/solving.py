@@ -19,7 +19,7 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.newton import cost, from_arcs, solved
-from satsym.solvers.constrained.revision import ROUNDED, contacts, without_idle, wrong
+from satsym.solvers.constrained.revision import ROUNDED, contacts, simpler, wrong
 from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.structure import Event as Happening
 from satsym.solvers.iteration import Limits, history_of
@@ -75,11 +75,12 @@ def revised(first: list[Structure], fresh: Callable[[Structure], Arcs], limits: 
 
 
 def _lean(arcs: Arcs, limits: Limits) -> Arcs:
-    """Return the extremal without superfluous arcs, if the remaining arcs are an extremal, otherwise unchanged."""
-    if (structure := without_idle(arcs)) is None:
-        return arcs
-    found = solved(from_arcs(arcs, structure), limits)
-    return arcs if found is None or wrong(found)[0] else found
+    """Return the extremal without superfluous junctions, as far as what remains is an extremal."""
+    for structure in simpler(arcs):
+        found = solved(from_arcs(arcs, structure), limits)
+        if found is not None and not wrong(found)[0]:
+            return _lean(found, limits)
+    return arcs
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:
