@@ -24,7 +24,7 @@ from satsym.solvers.search.escaping import REMEDY, escape
 from satsym.solvers.search.tried import Past
 from satsym.status import Status, Verdict
 
-ROUNDS = 3
+ROUNDS = 8
 """Maximum number of cheaper competitors that successively replace the solution."""
 
 SWITCHED = "bang-bang"

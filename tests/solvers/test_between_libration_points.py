@@ -61,18 +61,33 @@ PARTLY = {
         {"x": 1.1608, "y": 0.0376, "vx": 0.0064, "vy": 0.0268},
         {"x": 0.8438, "y": -0.0397},
     ),
+    "velocity free, back to L1": (
+        {"x": 0.8332, "y": 0.0142, "vx": 0.0733, "vy": -0.0295},
+        {"x": 0.8379, "y": 0.0008},
+    ),
+    "one velocity free": (
+        {"x": 0.8306, "y": 0.0029, "vx": -0.0167, "vy": 0.0201},
+        {"x": 1.1529, "y": 0.0162, "vy": 0.0469},
+    ),
 }
 """Initial and final states of passages whose end is partly free."""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("kind", "lasting", "direct"), [("height free", 4.9537, 0.0365532), ("velocity free", 4.1723, 0.0026083)]
+    ("kind", "lasting", "direct"),
+    [
+        ("height free", 4.9537, 0.0365532),
+        ("velocity free", 4.1723, 0.0026083),
+        ("velocity free, back to L1", 3.6476, 0.00043679),
+        ("one velocity free", 2.8907, 0.0077548),
+    ],
 )
-def test_ends_that_are_partly_free_are_compared_with_bent_ways(kind: str, lasting: float, direct: float) -> None:
-    """Ends are drawn, and paths to them bent: unbent coasts nearly all lead back to one motion.
+def test_ends_that_are_partly_free_are_compared_with_random_motions(kind: str, lasting: float, direct: float) -> None:
+    """Straight lines, coasts and bent paths nearly all lead to dearer motions.
 
-    Costs are those of Hermite-Simpson steps, 240 of them, with CasADi and Ipopt, from 16 drawn paths.
+    Costs are those of Hermite-Simpson steps with CasADi and Ipopt, from 16 drawn paths on 240 steps for the first two,
+    and from 12 of them on up to 3,200 steps for the others, until the controls, integrated again, led to the end.
     """
     initial, final = PARTLY[kind]
     found = satsym.solve(satsym.Instance.of(TRANSFER, initial=initial, final=final, tf=lasting))

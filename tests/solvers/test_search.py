@@ -530,7 +530,7 @@ def test_intervals_are_halved_at_most_where_a_mesh_does_not_resolve_its_motion(
 
 def test_a_motion_that_steps_over_a_constraint_is_seen_to_violate_it() -> None:
     case = instances.load("bryson-denham")
-    _, found = next(order.started(case, replace(LIMITS, work=solving.WORK), ""))
+    *_, found = next(order.started(case, replace(LIMITS, work=solving.WORK), ""))
     at = motion.motion(found)
     assert not motion.violates(at)
     over = np.array(at.x)

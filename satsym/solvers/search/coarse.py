@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -22,6 +22,7 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import planning
 from satsym.solvers.search.starts.planning import Plan
+from satsym.solvers.search.starts.sampling import Sample, begun_from, sampled
 from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
@@ -62,15 +63,18 @@ def started(
     way: tuple[Array, Array] | None = None,
     weak: bool = False,
     first: int = 0,
-) -> Iterator[tuple[Plan, Found]]:
-    """Yield plans of starts, and the solutions that they lead to on a coarse mesh; a known motion may grade the mesh.
+    skipped: Callable[[Plan], bool] = lambda _: False,
+) -> Iterator[tuple[int, Plan, Found]]:
+    """Yield indices and plans of starts, and the solutions on a coarse mesh; a known motion may grade the mesh.
 
     Parameters
     ----------
     weak
         Whether some starts ignore the bounds of controls at first.
     first
-        Index of the first start; earlier ones are skipped.
+        Index of the first start; earlier ones are left out.
+    skipped
+        Tells of each of the others, when its turn comes, whether it is left out.
     """
     controls = controls_of(instance)
     if controls is None:
@@ -87,16 +91,24 @@ def started(
     normed = any(norm.spot is not None for norm in controls.norms)
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
+    samples: list[Sample] | None = None
     known = list[tuple[float, Found]]()
     for number, plan in enumerate(plans[first:], first):
         if limits.expired:
             return
+        if skipped(plan):
+            continue
         with np.errstate(all="ignore"):
             bent = most < ITERATIONS and plan.drawn and plan.noise
-            found = _less_smoothed(
-                programmes, plan, limits, min(most, ASTRAY) if bent else most if number else ITERATIONS, known
-            )
-        yield plan, found
+            iterations = min(most, ASTRAY) if bent else most if number else ITERATIONS
+            if plan.sampled:
+                samples = sampled(programmes[0], planning.SAMPLED) if samples is None else samples
+                if plan.sampled > len(samples):
+                    continue
+                found = _from_sample(programmes, samples[plan.sampled - 1], limits, iterations, known)
+            else:
+                found = _less_smoothed(programmes, plan, limits, iterations, known)
+        yield number, plan, found
 
 
 def _less_smoothed(
@@ -133,9 +145,25 @@ def _less_smoothed(
         if not free.solved or programmes[0].controls.excess(v) > NEARLY_WITHIN:
             return replace(free, solved=False)
         start = free.unknown
-    first = found = nlp.solve(
-        programmes[0], start, limits, most, near=plan.timed or plan.arriving or plan.at_bound is not None
-    )
+    near = plan.timed or plan.arriving or plan.at_bound is not None
+    return _smoothed_less(programmes, nlp.solve(programmes[0], start, limits, most, near), limits, most, known)
+
+
+def _from_sample(
+    programmes: Sequence[Programme], sample: Sample, limits: Limits, most: int, known: list[tuple[float, Found]]
+) -> Found:
+    """Return the solution that a random motion leads to, on a mesh of its own, as :func:`_less_smoothed` does."""
+    meshes = [graded(sample.times, sample.x, INTERVALS)]
+    own = [replace(programme, meshes=meshes, kinds={}) for programme in programmes]
+    first = nlp.solve(own[0], begun_from(own[0], sample), limits, most)
+    return _smoothed_less(own, first, limits, most, known)
+
+
+def _smoothed_less(
+    programmes: Sequence[Programme], first: Found, limits: Limits, most: int, known: list[tuple[float, Found]]
+) -> Found:
+    """Return the solution with the least smoothing, from that of the first of several programmes."""
+    found = first
     if len(programmes) > 1 and first.solved:
         before = next((last for cost, last in known if same(cost, first.objective)), None)
         if before is not None:
@@ -174,7 +202,7 @@ def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float
     for share in shares:
         given = replace(instance, tf=instance.t0 + share * first, tf_guess=None)
         tries = islice(started(given, limits, ""), PRICED)
-        one = next((one for _, one in tries if one.solved), None)
+        one = next((one for *_, one in tries if one.solved), None)
         if one is None:
             return []
         found.append(Priced(share * first, one.objective, one.programme.sizes.cost))
@@ -183,7 +211,7 @@ def costs_by_duration(instance: Instance, limits: Limits, shares: Sequence[float
 
 def first_motion(instance: Instance, limits: Limits, most: int = STARTS) -> Motion | None:
     """Return the motion from the first of several starts that is solved on a coarse mesh, or ``None``."""
-    found = next((one for _, one in islice(started(instance, limits, ""), most) if one.solved), None)
+    found = next((one for *_, one in islice(started(instance, limits, ""), most) if one.solved), None)
     return None if found is None else motion(found)
 
 

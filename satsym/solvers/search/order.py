@@ -10,9 +10,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.starts import ends
+from satsym.solvers.search.starts.planning import Plan
 from satsym.solvers.search.tried import Past, Tried
 
 Answer = TypeVar("Answer")
@@ -36,9 +37,12 @@ ANY_DURATION where the duration is free, and CONVEX where the problem is convex,
 then. After DOUBTFUL of them the search asks whether any motion reaches the end."""
 
 QUIET, FURTHER, PATIENCE = 4, 6, 24
-"""The list of competitors ends after QUIET of them in a row that show nothing new, and FURTHER more for each further
-cost that was found; those that are not solved count half. Where ends are drawn, or path constraints separate the ways,
-it ends after PATIENCE in a row, solved or not."""
+"""The list of competitors ends after QUIET of them that are not cheaper than the answer, and FURTHER more for each
+further cost that they lead to, but after PATIENCE at most. Those that are not solved count half. Where ends are drawn,
+or path constraints separate the ways, it ends after PATIENCE, solved or not."""
+
+FRUITLESS = 4
+"""Number of starts of one kind after which the others of this kind are left out if none of them was solved."""
 
 SOON = 25_000
 """Unknowns times iterations that the list of competitors takes at least, because starts of small programmes cost
@@ -84,7 +88,7 @@ def searched(
     costs: list[float] = []
     patience = FAILING if instance.tf is not None else ANY_DURATION
     failing, failed, endless, stable, reached = CONVEX if convex(instance) else patience, 0, 0, 0, False
-    for number, (plan, found) in enumerate(started(instance, limits, loose, weak=True)):
+    for number, plan, found in started(instance, limits, loose, weak=True):
         if found.solved and at_edge(found):
             endless += 1
             if endless >= ENDLESS:
@@ -155,12 +159,16 @@ def _further(
     past: Past,
 ) -> Iterator[Tried[Answer]]:
     """Competitors from the starts that were not tried yet."""
-    seen, first = past.seen, len(past.tried)
+    seen = past.seen
     shapes = [] if way is None else [_shape(*way)]  # of the answer, and of others at its cost
     quiet, solved, begun = 0.0, 0, (spent := limits.meter.spent)
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or ends.random(instance), AROUND if constrained else PROBE
-    for number, (plan, found) in enumerate(started(instance, limits, loose, BESIDE, past.first, first=first), first):
+    further = started(
+        instance, limits, loose, BESIDE, past.first, first=past.begun, skipped=lambda plan: _hopeless(plan, past.tried)
+    )
+    for number, plan, found in further:
+        past.begun = number + 1
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
         else:
@@ -179,21 +187,27 @@ def _further(
         elif (known := next((came for coarse, came in seen if same(found.objective, coarse)), None)) is not None:
             yield Tried(plan, known)
         else:
-            quiet = 0.0
             came, answer, unsettled = followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
             seen.append((found.objective, came))
             unsettled &= not constrained  # with constraints it steps over one, mostly
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None, unsettled)
         spent = limits.meter.spent
         # starts with other turns and durations are tried whatever the first ones lead to
-        further = plan.turns is not None or plan.timed or plan.arriving
+        apart = plan.turns is not None or plan.timed or plan.arriving
         known = _distinct(came for _, came in seen)
-        alone = known == 1 and solved > 1 and not further and limits.meter.spent - begun > probe
+        alone = known == 1 and solved > 1 and not apart and limits.meter.spent - begun > probe
         failing = FAILING if patient else FAILING / 2
-        enough = (PATIENCE if patient else QUIET + FURTHER * (known - 1)) if seen else failing
+        fewer = PATIENCE if patient else min(QUIET + FURTHER * (known - 1), PATIENCE)
+        enough = fewer if seen else failing
         done = alone or (quiet >= enough and limits.meter.spent - begun > SOON)
         if done or number + 1 >= STARTS or limits.expired:
             break
+
+
+def _hopeless(plan: Plan, tried: Sequence[Tried[Any]]) -> bool:
+    """Return whether enough starts of the kind of a plan were tried and none was solved."""
+    alike = [one for one in tried if one.plan.kind == plan.kind]
+    return len(alike) >= FRUITLESS and all(np.isnan(one.cost) and not one.unsettled for one in alike)
 
 
 def _distinct(costs: Iterable[float]) -> int:

@@ -108,7 +108,7 @@ def _rest(instance: Instance, controls: Controls, duration: float) -> Rest:
     low, high = controls.lower, controls.upper
     bounded = np.isfinite(low) & np.isfinite(high)
     v = np.zeros(controls.count)
-    v[bounded] = 0.5 * (low + high)[bounded]
+    v[bounded] = 0.5 * (low[bounded] + high[bounded])
     start, end = np.array(instance.initial), wanted(instance, instance.t0 + duration)
     times = instance.t0 + duration * np.linspace(0.0, 1.0, STEPS + 1)
     states = followed(instance, controls, times, start, v, _far(start, end))

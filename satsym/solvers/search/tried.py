@@ -45,6 +45,8 @@ class Past:
         Number of these answers.
     first
         Times and states of the first of these answers, which grade the coarse mesh.
+    begun
+        Number of starts in the list that were tried or left out.
     tried
         Results of the starts, in their order.
     seen
@@ -56,6 +58,7 @@ class Past:
 
     answers: int = 0
     first: tuple[Array, Array] | None = None
+    begun: int = 0
     tried: list[Tried[Any]] = field(default_factory=list)
     seen: list[tuple[float, float]] = field(default_factory=list)
     asked: Instance | None = None

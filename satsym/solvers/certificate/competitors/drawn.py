@@ -1,30 +1,23 @@
-"""Randomly drawn controls and extremals, with which a solution is compared as well as with other starts of the search.
+"""Randomly drawn controls, with which a solution is compared as well as with other starts of the search.
 
 If no final state is prescribed, all controls are admissible, and no control costs less than the optimum. Solvers find
 extremals by descent, which need not leave the region of attraction of a local minimum. A simulation has no such
 restriction: if one of many random controls costs less, the solution is not the optimum.
-
-Extremals are drawn if the problem is likely to have several minima that a few starts do not show
-(:func:`several_likely`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.grid import Grid, interleave
-from satsym.instance import Guess, Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.competitors.simulations import Simulations, simulations_of
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import unit_sizes
 from satsym.solvers.simulation.together import costs_together
-from satsym.solvers.spare_time import frequency, longest, rates_by_states
-from satsym.solvers.switching.linear.linear_motion import linear_motion
 
 GROUPS, DRAWN, WAVES = 8, 96, 4
 """Number of independent groups of random controls, which keeps them from gathering about one local minimum; number of
@@ -50,14 +43,6 @@ larger change does not count as cheaper."""
 WORTH = 1e-3
 """Minimum saving, relative to the cost, of a control that counts as cheaper. Smaller savings may be errors of the
 grid."""
-
-UNLIKE = 1.0 / 3.0
-"""Mean deviation of the linearised rates from their mean along the motion, relative to their magnitude, above which a
-motion counts as far from linear. A motion that stays on an orbit has about 1/7, one that leaves a potential well or
-falls from an unstable equilibrium more than 1/2."""
-
-SWING = np.pi
-"""Phase angle of the fastest mode over the spare time, in rad, above which another swing of the motion is possible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,54 +164,3 @@ def _certain(drawn: Drawn, objective: float) -> bool:
     control = np.array([np.interp(times, coarse, row) for row in drawn.control])
     again, _ = twice(control, fine)
     return saved > WORTH * abs(objective) and abs(again - drawn.cost) < CERTAIN * saved
-
-
-def extremals_below(solution: Solution, seed: int) -> Iterator[Instance]:
-    """Yield the instance of a solution with initial guesses from approximate extremals that seem to cost less.
-
-    Parameters
-    ----------
-    seed
-        Seed of the random extremals.
-    """
-    from satsym.solvers.collocation.scaling import two_point
-    from satsym.solvers.drawn_beside import about
-
-    instance, lasting = replace(solution.instance, guess=Guess()), float(np.ptp(solution.times))
-    if not instance.final or not several_likely(solution):
-        return
-    problem = two_point(replace(instance, tf=instance.t0 + lasting, tf_guess=None), lasting)
-    for one in about(solution, problem, seed):
-        rows = (one.states * problem.scale.state[:, None]).tolist()
-        states = dict(zip(instance.model.spec.state_names, map(tuple, rows), strict=True))
-        end = instance.t0 + one.duration if instance.tf is None else None
-        yield replace(instance, guess=Guess(states), tf_guess=end)
-
-
-def several_likely(solution: Solution) -> bool:
-    """Return whether a problem is likely to have several minima that a few starts do not show.
-
-    This is so if its motion is far from linear, if it is not linear and controls switch, or if a free duration leaves
-    time for another swing.
-    """
-    nonlinear = any(solution.switching_times) and linear_motion(solution.instance) is None
-    return nonlinear or far_from_linear(solution) or may_swing(solution)
-
-
-def far_from_linear(solution: Solution) -> bool:
-    """Return whether the linearised rates vary strongly along a solution.
-
-    The linearised rates of a linear motion are constant, and its minimum cost has a single minimum if costs are convex.
-    """
-    size = unit_sizes(solution)[: len(solution.x)]
-    scaled = rates_by_states(solution, 1) * (size / size[:, None])[:, :, None]
-    widths = np.gradient(solution.times)
-    mean = (scaled * widths).sum(axis=2, keepdims=True) / widths.sum()
-    apart, whole = (float(np.linalg.norm(one, axis=(0, 1)) @ widths) for one in (scaled - mean, scaled))
-    return apart > UNLIKE * whole
-
-
-def may_swing(solution: Solution) -> bool:
-    """Return whether a free duration leaves time for another swing, which may cost less than direct acceleration."""
-    spare = longest(solution) - float(solution.times[-1] - solution.times[0])
-    return spare > 0.0 and spare * frequency(solution) > SWING

@@ -1,7 +1,4 @@
-"""Competitors from the direct search: the costs of motions found from other starts than the one that led to an answer.
-
-If none of them is cheaper, randomly drawn extremals are used as starts as well.
-"""
+"""Competitors from the direct search: the costs of motions that other starts than that of an answer lead to."""
 
 from __future__ import annotations
 
@@ -11,8 +8,7 @@ from dataclasses import replace
 from satsym.instance import Guess, Instance
 from satsym.instance.unknowns import Unknown
 from satsym.solution import Kind, Solution
-from satsym.solvers.certificate.competitors.comparison import COST_MARGIN, going_round, margin
-from satsym.solvers.certificate.competitors.drawn import extremals_below
+from satsym.solvers.certificate.competitors.comparison import going_round
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 from satsym.solvers.search.tried import Past
@@ -22,9 +18,6 @@ WORK = 2_000_000
 
 TURNED = 400_000
 """Maximum work, in unknowns times iterations, of the search for a final angle that differs by one turn."""
-
-GUESSED = 200_000
-"""Maximum work, in unknowns times iterations, of the search from a randomly drawn extremal."""
 
 
 def kinds(instance: Instance) -> list[Kind]:
@@ -47,7 +40,7 @@ def searched(
     Parameters
     ----------
     past
-        Earlier answers and their number, which is the seed of the random extremals.
+        Earlier answers.
     free
         Initial states, initial time and parameters that the starts may choose as well as the final state.
 
@@ -87,13 +80,6 @@ def searched(
         costs[Kind.REVOLUTIONS].append(math.nan if found is None else found.objective)
         if found is not None and found.objective < (solution if better is None else better).objective:
             better = found
-    for guess in [] if better else extremals_below(solution, past.answers):
-        within = replace(within, work=limits.meter.spent + GUESSED)
-        found = None if limits.late else solving.searched(replace(guess, final=instance.final, free=free), within)
-        costs[Kind.STARTS].append(math.nan if found is None else found.objective)
-        if found is not None and margin(found.objective, solution.objective, COST_MARGIN) < 0.0:
-            better = replace(found, instance=replace(found.instance, guess=Guess(), tf_guess=instance.tf_guess))
-            break
     if instance.tf is None and math.isfinite(cost := _at_once(solution)):
         costs[Kind.DURATIONS].append(cost)
     return {kind: own for kind, own in costs.items() if own}, better, unsettled

@@ -49,6 +49,9 @@ LENGTHS = (0.25, 4.0, 0.06)
 TURNS = (0, -1, 1, 2, 3)
 """Numbers of revolutions that are tried if the duration is free; -1 is one turn in the opposite direction."""
 
+SAMPLED = 8
+"""Number of starts that are random motions close to the end."""
+
 DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)
 """Durations, relative to the initial guess, that are fixed at first."""
 
@@ -83,6 +86,8 @@ class Plan:
         Constant position of the controls in their ranges, between -1 and 1; ``None`` for the default.
     parts
         Fractions of the duration between waypoints; empty if they are equal.
+    sampled
+        Number of the random motion that the start is, of those that come close to the end; 0 if it is none.
     """
 
     scale: float = 1.0
@@ -98,6 +103,12 @@ class Plan:
     guessed: bool = False
     at_bound: float | None = None
     parts: tuple[float, ...] = ()
+    sampled: int = 0
+
+    @property
+    def kind(self) -> tuple[bool, ...]:
+        """Return what the start has in common with others, which fail for the same reasons."""
+        return self.timed, self.noise > 0.0, self.arriving, self.turns is not None, self.drawn > 0, self.sampled > 0
 
 
 def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]:
@@ -147,6 +158,9 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     if not given:
         found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
+    if not instance.model.spec.interior and (instance.final or instance.model.spec.multipliers):
+        for k in range(SAMPLED):  # every other one
+            found.insert(2 + 2 * k, Plan(sampled=k + 1))
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found
 
 
