@@ -7,8 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from satsym import instance, kernels, solvers
-from satsym.analysis.comparison import case_of, compare
-from satsym.analysis.coupling import Driver, reached, undriven
+from satsym.analysis.comparison import case_of, compare, reached, undriven
 from satsym.analysis.linear.ranks import controllability
 from satsym.analysis.regulator.feedback import designed
 from satsym.analysis.subject import analyse
@@ -19,10 +18,7 @@ PITCH = {"theta", "w_y", "eta_y", "eta_y_dot", "wheel_speed"}
 
 @pytest.fixture(scope="module")
 def driver():
-    case = case_of(instance.load("lapan-minimum-time"))
-    from satsym.analysis.classical.signals import spans_of
-
-    return Driver(case.instance, spans_of(case.times, case.x, case.u, case.switching_times), 0.0)
+    return case_of(instance.load("lapan-minimum-time"))
 
 
 @pytest.mark.slow
