@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from satsym.analysis import speed
 from satsym.cli.machine import bench
+from satsym.kernels.batch import compiling
 from satsym.status import Status
 from tests.cli.test_cli import Run, run
 
@@ -20,12 +20,12 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_instance_is_measured_by_steps_and_by_its_solution(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(speed, "able", lambda: False)
+    monkeypatch.setattr(compiling, "able", lambda: False)
     code, out, err = run("bench", "return-to-orbit", "--quick", "--json")
     assert (code, err) == (0, "")
     found = json.loads(out)
     assert found["command"] == "bench"
-    assert found["machine"]["cores"] == speed.cores() >= 1
+    assert found["machine"]["cores"] == bench.cores() >= 1
     assert [(one["backend"], one["cores"]) for one in found["steps"]] == [("numpy", 1)]
     assert 1e4 < found["steps"][0]["per_second"] < 1e10
     assert 0.0 < found["solve"]["solve_s"] < found["solve"]["certificate_s"] < 60.0
@@ -42,27 +42,27 @@ def test_machine_code_is_measured_on_one_core_and_on_all(run: Run) -> None:
     assert code == 0
     found = json.loads(out)
     assert found["solve"] is None, "a model has nothing to be solved"
-    assert [one["cores"] for one in found["steps"]] == [1, *sorted({1, speed.cores()})]
+    assert [one["cores"] for one in found["steps"]] == [1, *sorted({1, bench.cores()})]
     numpy, numba, *_ = (one["per_second"] for one in found["steps"])
     assert numba > 3.0 * numpy
 
 
 def test_steps_that_take_longer_are_fewer_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    monkeypatch.setattr(speed.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(bench.time, "perf_counter", lambda: now[0])
 
     def run(lasting: float) -> None:
         now[0] += lasting
 
-    quick, slow = (speed._rate(lambda lasting=lasting: run(lasting), 1.0) for lasting in (0.01, 0.04))
-    assert quick == pytest.approx(speed.COLUMNS * speed.STEPS / 0.01)
+    quick, slow = (bench._rate(lambda lasting=lasting: run(lasting), 1.0) for lasting in (0.01, 0.04))
+    assert quick == pytest.approx(bench.COLUMNS * bench.STEPS / 0.01)
     assert slow == pytest.approx(quick / 4.0)
 
 
 def test_without_an_answer_it_is_said(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(speed, "able", lambda: False)
-    failed = speed.Solved(Status.INFEASIBLE, "collocation", 0.1, None)
-    monkeypatch.setattr(speed, "solved", lambda _: failed)
+    monkeypatch.setattr(compiling, "able", lambda: False)
+    failed = Status.INFEASIBLE, {"method": "collocation", "solve_s": 0.1, "certificate_s": None}
+    monkeypatch.setattr(bench, "measured_solution", lambda _: failed)
     code, out, _ = run("bench", "return-to-orbit", "--quick")
     assert code == 4
     assert "the instance has no solution: infeasible" in out
