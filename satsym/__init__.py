@@ -42,9 +42,8 @@ if TYPE_CHECKING:
     from satsym.front.derivation import derive
     from satsym.front.instance import Instance, load
     from satsym.front.proving import prove
-    from satsym.front.solution import Solution, solve
+    from satsym.front.solution import Solution, export, simulate, solve
     from satsym.front.studies import study
-    from satsym.front.trajectory import export, simulate
     from satsym.spec import Variable
     from satsym.symbolic import Angle, Annulus, Ball, Box, FirstOrder, Free, Newton, Problem
 
@@ -54,9 +53,8 @@ _HOMES = {
     "front.derivation": ("derive",),
     "front.instance": ("Instance", "load"),
     "front.proving": ("prove",),
-    "front.solution": ("Solution", "solve"),
+    "front.solution": ("Solution", "export", "simulate", "solve"),
     "front.studies": ("study",),
-    "front.trajectory": ("export", "simulate"),
     "spec": ("Variable",),
     "symbolic": ("Angle", "Annulus", "Ball", "Box", "FirstOrder", "Free", "Newton", "Problem"),
 }

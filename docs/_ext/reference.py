@@ -12,7 +12,7 @@ from sphinx.application import Sphinx
 
 GROUPS = {
     "Instances and solutions": (
-        "load Instance solve Solution simulate front.trajectory.Trajectory front.curves.Curve export"
+        "load Instance solve Solution simulate front.solution.Trajectory front.curves.Curve export"
     ),
     "Certificates and proofs": "solution.Certificate solution.Check solution.Competitors prove",
     "Many instances": "study front.studies.Study solvers.repeated.Repeated",

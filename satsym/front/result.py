@@ -28,8 +28,6 @@ from satsym.wording import printable, shown, suggestion
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from satsym.solution import Simulation, Solution
-
 
 class Pictures(Mapping[str, "Figure"]):
     """Figures by name, the overview first; matplotlib is loaded when the first one is requested.

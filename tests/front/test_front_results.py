@@ -15,7 +15,7 @@ import satsym
 from satsym.cli import main
 from satsym.front import html
 from satsym.front.between import Motion
-from satsym.front.trajectory import Trajectory
+from satsym.front.solution import Trajectory
 from satsym.instance.files import SHIPPED
 from satsym.kernels.digest import sealed
 from satsym.status import BadInput

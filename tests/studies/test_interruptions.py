@@ -22,7 +22,7 @@ import pytest
 from satsym import instance
 from satsym.cli import main
 from satsym.cli.saving import study_folder
-from satsym.front.trajectory import simulate
+from satsym.front.solution import simulate
 from satsym.report import study as reports
 from satsym.report.results import set_list, sets, studies
 from satsym.report.results.files import text

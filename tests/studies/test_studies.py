@@ -17,8 +17,8 @@ from satsym.cli import main
 from satsym.cli.saving import study_folder
 from satsym.front.analysing import lqr
 from satsym.front.instance import Instance, load
+from satsym.front.solution import Trajectory
 from satsym.front.studies import study
-from satsym.front.trajectory import Trajectory
 from satsym.instance import numbers
 from satsym.instance.schema import StudyTable
 from satsym.report.results import trajectory
