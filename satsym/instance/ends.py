@@ -5,15 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from enum import Enum
-from typing import TYPE_CHECKING
 
 from satsym.instance.resolve import FREE, REFERENCE, Row, known, value_of
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import shown
-
-if TYPE_CHECKING:
-    pass
 
 
 class Side(str, Enum):

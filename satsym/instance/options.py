@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from satsym.instance import weights
 from satsym.instance.resolve import known, quantity, time, value_of
@@ -13,10 +12,6 @@ from satsym.methods import possible
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
 from satsym.wording import shown
-
-if TYPE_CHECKING:
-    pass
-
 
 Row = tuple[float, ...]
 Weights = Sequence[float | Sequence[float]]
