@@ -22,17 +22,17 @@ class ControlPart:
     Attributes
     ----------
     name
-        As instances name it.
+        Name of the set in instances.
     kind
-        What the controls of it obey.
+        Kind of the set.
     controls
-        Their names, in order.
+        Names of the controls, in order.
     branch
-        How H is minimised over it.
+        The way in which H is minimised over the set.
     ends
         Whether H may be least at an end without falling to it, so that there must be ends.
     turned_by
-        Of a magnitude, which is never negative: the angle that turns what it multiplies.
+        Name of the angle that turns what the control multiplies, if the control is a magnitude; else empty.
     """
 
     name: str

@@ -203,7 +203,7 @@ class ControlSet:
         Parameters
         ----------
         controls
-            Their number m.
+            Number m of controls.
         """
         if self.kind == "box":
             return self.box

@@ -54,25 +54,25 @@ class Method:
     Attributes
     ----------
     name
-        As ``[solver] method`` has it.
+        Name of the method in ``[solver] method``.
     title
-        One line for the command line's help.
+        Description in one line for the help of the command line.
     solver
         ``"module:function"`` of the function ``(instance, progress) -> Solution``, imported when it is first called.
     switching
-        Whether it is for controls that enter the Hamiltonian without a square, or else for those that do not.
+        Whether the method is for controls that enter the Hamiltonian without a square, or else for those that do not.
     constrained
-        Whether it is for problems with path constraints or points on the way, or else for those without.
+        Whether the method is for problems with path constraints or points on the way, or else for those without.
     automatic
-        Whether it is what ``"auto"`` begins with for such controls.
+        Whether ``"auto"`` begins with this method for such controls.
     certified
         Whether its answers are accurate enough for a certificate.
     relaxed
-        Whether it knows ``[solver] relaxation``.
+        Whether the method uses ``[solver] relaxation``.
     refusal
-        Why it cannot solve an instance, and what to do; empty if it can.
+        Function that returns why the method cannot solve an instance, and what to do; empty if it can.
     remembers
-        Numbers for each step that are kept at once: so many for each state, and for each control.
+        How many numbers are kept for each step at once: for each state, and for each control.
     """
 
     name: str

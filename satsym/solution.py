@@ -19,11 +19,11 @@ class Iteration:
     Attributes
     ----------
     number
-        From 0, the starting point.
+        Number of the iteration; 0 is the starting point.
     objective
         The cost there; NaN where it is not known, as on the way to exact arcs.
     residual
-        How far the optimality conditions are from holding, relative to the size of the control.
+        Residual of the optimality conditions, relative to the size of the control.
     """
 
     number: int
@@ -46,9 +46,9 @@ class Event:
     kind
         ``"entry"``, ``"exit"``, ``"touch"``, ``"interior"`` or ``"jump"``.
     name
-        Of the constraint, the point or the control.
+        Name of the constraint, the point or the control.
     t
-        When.
+        Time of the event.
     """
 
     kind: str
@@ -119,7 +119,7 @@ class Certificate:
     Attributes
     ----------
     verdict
-        The verdict.
+        Verdict on the solution.
     boundary_residual
         Largest relative residual of the final conditions after integration from the initial costates.
     dynamics_defect
@@ -187,7 +187,7 @@ class Solution:
     Attributes
     ----------
     instance
-        What was solved; names, units and bounds are there.
+        The instance that was solved, with names, units and bounds.
     method, status, message
         Solver, outcome, and one sentence for people.
     objective
@@ -200,18 +200,18 @@ class Solution:
     switching_times
         For each control, the times at which it reaches or leaves a bound.
     iterations, history
-        Their number, and what each achieved.
+        Number of iterations, and a record of each.
     wall_s
         Seconds of solving, without loading and reporting.
     certificate
-        ``None`` where there is no answer to certify.
+        Certificate of the solution; ``None`` without a solution.
     events
-        Where boundaries of path constraints are entered, left and touched, and where controls jump between minimisers
-        of H, in order of time.
+        Entries, exits and touch points of path constraints, and jumps of controls between minimisers of H, in order of
+        time.
     intermediate
-        Of a continuation: the answers of the problems before this one, in order.
+        Solutions of the preceding problems of a continuation, in order.
     interval
-        Where controls chatter, what the least cost lies between.
+        Interval that contains the least cost, if controls chatter.
     """
 
     instance: Instance
@@ -248,7 +248,7 @@ class Simulation:
     Attributes
     ----------
     instance
-        What was simulated.
+        The instance that was simulated.
     feedback
         Name of the control law, ``"none"`` for the uncontrolled motion.
     status, message
@@ -256,7 +256,7 @@ class Simulation:
     times, x, u
         As in :class:`Solution`.
     invariants
-        By name: of the uncontrolled motion, and balances that hold under every control.
+        Conserved quantities of the uncontrolled motion, and balances that hold under every control, by name.
     metrics
         Numbers that describe the motion, by name.
     """

@@ -96,7 +96,7 @@ def find(name_or_path: str, folder: Path | None = None) -> Path:
     name_or_path
         A path ending in ``.py``; or a name: the file in ``folder`` if there is one, else the shipped one.
     folder
-        Where the asking file lies.
+        Folder of the file that asks.
 
     Raises
     ------

@@ -131,13 +131,13 @@ class ModeGroup:
     Attributes
     ----------
     name
-        Where no more is known.
+        Name of these modes, unless one of the following names applies.
     states
-        Their names.
+        Names of the states.
     vanishing, slow
-        A parameter, and what a mode is called that becomes infinitely slow with it; empty where that says nothing.
+        A parameter, and the name of modes that become infinitely slow as it vanishes; empty if there is no such name.
     neutral
-        What a mode is called that has the eigenvalue 0; empty where it has no other name.
+        Name of modes with the eigenvalue 0; empty if these have no name of their own.
     """
 
     name: str
@@ -188,7 +188,7 @@ class ProblemSpec:
     name, title, source
         Name in instances, one line for people, and the derivation file it came from.
     states, controls, parameters
-        In the model's order; arrays and JSON objects follow it.
+        States, controls and parameters in the model's order, which arrays and JSON objects follow.
     control_set
         Kind of the control set; ``None`` for a model without a cost.
     has_cost, has_terminal_cost, has_reference, autonomous
@@ -197,7 +197,7 @@ class ProblemSpec:
         Names of the conserved quantities of the uncontrolled motion, of the components of the position vector, and
         of the multipliers of terminal constraints (each empty where there are none).
     outputs
-        Of a linear model: what is measured. Empty where nothing is, or the model is not linear.
+        Outputs of a linear model; empty if there are none, or if the model is not linear.
     linear
         Names of the functions that only linear models have; empty where the model is not linear.
     keplerian
@@ -207,24 +207,24 @@ class ProblemSpec:
     coordinates, velocities
         States q and v of a motion that is separable, see :attr:`separable`; empty where it is not.
     quantities
-        What is derived along a motion besides, such as the power of a motor.
+        Further quantities that are computed along a motion, such as the power of a motor.
     balances
-        What changes only by something from outside, whatever the controls do, such as an angular momentum.
+        Quantities that change only by external influences, whatever the controls do, such as an angular momentum.
     switching_curve
         Names of position and rate where the control of least time follows from the side of a curve on which they lie;
         empty where there is no such curve in closed form.
     conditions
-        What the parameters must obey besides being positive one by one.
+        Conditions that several parameters must satisfy together.
     equilibria
-        Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
+        The parameter over which equilibria are followed, for models of the attitude in orbit; else empty.
     control_parts
-        The sets whose product the control set is, where it was stated set by set; else empty.
+        The sets whose product is the control set, if it was stated set by set; else empty.
     mode_groups
-        What its modes are called, by the states that have the largest part in them. May be empty.
+        Names of modes by the states that have the largest part in them. May be empty.
     maximise
-        Whether the author's objective is to be large; functions are those of its negative, the cost.
+        Whether the author's objective is maximised; generated functions are those of its negative, the cost.
     objective_unit
-        Of the objective, where it is stated; else empty.
+        Unit of the objective, if it is stated; else empty.
     chattering
         Names of controls whose singular arcs, within their bounds, are met and left by infinitely many switches only.
     moving_magnitudes

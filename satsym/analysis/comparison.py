@@ -83,9 +83,9 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
     Parameters
     ----------
     instances
-        Their models have the same controls, and begin with the same states.
+        Instances whose models have the same controls, and begin with the same states.
     progress
-        Called with the name of each before its turn, and with how far one that is driven has come.
+        Function that is called with the name of each instance before its turn, and with the progress of driven motions.
 
     Raises
     ------
@@ -237,14 +237,15 @@ def reached(instance: Instance, driver: Case, still: Array, progress: Progress =
     still
         The uncontrolled motion from the same start, see :func:`undriven`.
     progress
-        Called with the share of the time that has been followed.
+        Function that is called with the fraction of the time that has been integrated.
 
     Returns
     -------
     Case
-        Its metrics are for each state its largest magnitude (``_peak``), and the largest difference from the motion
-        without the control (``_driven``); for each in the unit of what the control changes most, ``_share``: the
-        largest difference of its rate of change, relative to the largest of all in that unit.
+        The driven motion. Its metrics are, for each state, the largest magnitude (``_peak``) and the largest difference
+        from the motion without the control (``_driven``); for each state in the unit of the state that the control
+        changes most, ``_share`` is the largest difference of its rate of change, relative to the largest of all in that
+        unit.
     """
     assert instance.driven is not None
     model, p = instance.model, instance.parameters

@@ -93,9 +93,9 @@ def saved_folder(name: str, command: str | None) -> Path:
     Parameters
     ----------
     name
-        Of an instance or a model.
+        Name of an instance or a model.
     command
-        Whose results are meant; ``None``: those of the command that wrote last.
+        The command that wrote the results; ``None`` for the command that wrote last.
 
     Raises
     ------

@@ -54,7 +54,7 @@ class Instance:
     written
         The tables of the instance file.
     case
-        The same data, checked against the model, in the form that the solvers use.
+        The data of the instance after checks against the model, in the form that the solvers use.
     """
 
     written: Written

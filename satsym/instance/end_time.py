@@ -115,7 +115,7 @@ def inequalities_at(instance: Instance, t: float, x: Array) -> tuple[Array, Arra
     slopes
         Derivatives by the states and, last, by the time, a row each: (i, n + 1).
     on_time
-        What a multiplier of one adds to the transversality condition of the final time, shape (i,).
+        Contribution of a multiplier of one to the transversality condition of the final time, shape (i,).
     """
     model, n = stated(instance.model), len(x)
     c, count = len(model.spec.multipliers), len(model.spec.terminal_inequalities)

@@ -68,7 +68,7 @@ def load(name_or_path: str | Path) -> Instance:
     Returns
     -------
     Instance
-        With every number finite and in the model's unit.
+        The instance; all numbers are finite and in the model's units.
 
     Raises
     ------

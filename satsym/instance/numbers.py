@@ -61,7 +61,7 @@ class Key:
         Parameters
         ----------
         place
-            Where messages say that it stands; by default its name.
+            The place of the number in messages; by default its name.
 
         Raises
         ------
@@ -220,9 +220,9 @@ def named(text: str, instance: Instance, place: str, without: Table | None = Non
     Parameters
     ----------
     place
-        Where messages say that it stands.
+        The place of the name in messages.
     without
-        A table whose numbers are not meant.
+        A table whose numbers are excluded.
 
     Raises
     ------

@@ -29,7 +29,7 @@ class Body:
     mu
         Gravitational parameter in km**3/s**2 (JPL's ephemeris DE440, Park and others 2021).
     radius
-        At its equator, in km (IAU working group on cartographic coordinates, 2015).
+        Equatorial radius in km (IAU working group on cartographic coordinates, 2015).
     """
 
     mu: float
@@ -60,14 +60,14 @@ class OrbitOptions:
     Attributes
     ----------
     epoch
-        When the model's time is zero, in UTC.
+        Date and time in UTC at which the model's time is zero.
     frame
         The axes, one of :data:`FRAMES`.
     centre
         The body at the origin, one of :data:`BODIES`.
     inclination, node, argument
-        How the plane of a planar model lies in the frame, in rad: angle between the two planes, direction of the
-        ascending node, and angle from there to the first axis of the model.
+        Orientation of the plane of a planar model in the frame, in rad: the angle between the two planes, the direction
+        of the ascending node, and the angle from there to the first axis of the model.
     """
 
     epoch: datetime

@@ -76,11 +76,11 @@ class ClassicalOptions:
     follows
         Name of the state that follows.
     command
-        Its value from then on, in the model's unit.
+        Commanded value of this state, in the model's unit.
     damping
-        Both poles of the loop lie at its negative; ``None`` where `gains` are given.
+        Damping d; both poles of the loop are at -d. ``None`` where `gains` are given.
     gains
-        Of the rate and of the state; ``None`` where they follow from `damping`.
+        Gains of the rate and of the state; ``None`` where they follow from `damping`.
     differentiator
         Time constant of the circuit that measures the rate; 0 for an ideal one.
     """
@@ -99,9 +99,9 @@ class DrivenOptions:
     Parameters
     ----------
     control
-        Its name, also that of a control or a derived quantity of their models.
+        Name of the control, which is also the name of a control or a derived quantity of the models of the others.
     by
-        The instances, one run for each.
+        Names of the instances that compute the control; there is one run for each.
     """
 
     control: str
@@ -115,9 +115,9 @@ class Guess:
     Parameters
     ----------
     state, control
-        By name; names left out are the solver's to guess.
+        Guesses of states and controls by name; solvers guess those that are left out.
     costate
-        By the name of the state each belongs to.
+        Guesses of costates by the names of their states.
     """
 
     state: Mapping[str, Row] = field(default_factory=dict)
@@ -135,16 +135,16 @@ class Instance:
     Parameters
     ----------
     name, path, title
-        The file's name without its ending, where it was read, and one line for people.
+        Name of the file without its ending, path of the file, and one line for people.
     model
         Kernels of the model.
     parameters, initial
-        In the model's order.
+        Parameters and initial state, in the model's order.
     final
         Given final states by name, in the model's order: a number, or ``"reference"`` for the value of the model's
         reference at the final time. A state that is not here is free.
     t0, tf, tf_guess
-        Initial time; final time, ``None`` where it is free; and then where to start looking, if stated.
+        Initial time; final time, ``None`` where it is free; and an initial guess of a free final time, if stated.
     lower, upper
         Bounds of the controls, in the model's order; infinite where there is none.
     max_norm
@@ -159,21 +159,21 @@ class Instance:
     driven
         A control that other instances have worked out, if there is one.
     norms
-        Of a product of control sets: the least and the largest norm, by the name of the set.
+        Least and largest norm by the name of the set, for products of control sets.
     free
         Initial states, initial time and parameters that are to be found; their fields hold where to begin.
     continuation
-        What changes on the way to this problem, where it is solved by continuation.
+        Numbers that change on the way to this problem, if it is solved by continuation.
     ranges
         Lower and upper limits of final states by name, infinite where there is none.
     met
-        At which end of its range a final state is, once that was found; `final` then holds its value. With these are
-        the inequalities at the end that are active, all at their upper end, which are constraints of `model` then; of
-        those in time alone the final time follows, and is given then.
+        The active limits, once they are found: by the name of a state, the end of its range at which the final state
+        lies, whose value is then in `final`; and by the name of an active inequality at the end, its upper end. Such
+        inequalities are then constraints of `model`; one in time alone determines the final time, which is then given.
     orbit
-        Where in the sky and when it takes place, if that is stated.
+        Frame, centre and epoch of the motion, if they are stated.
     work
-        Columns at which the motion may be linearised by each search, of trial problems only.
+        Largest number of columns at which a search may linearise the motion; finite for trial problems only.
     """
 
     name: str

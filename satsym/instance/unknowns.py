@@ -33,7 +33,7 @@ class Unknown:
     Attributes
     ----------
     place, name, index
-        Its table, its key there, and its position among the states or parameters.
+        Table of the number, its key there, and its position among the states or parameters.
     positive
         Whether only positive values are meaningful.
     """

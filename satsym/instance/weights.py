@@ -37,7 +37,7 @@ def checked(
     N
         Rows, or ``None`` for zero.
     states, inputs
-        How many there are.
+        Numbers of states and of inputs.
 
     Raises
     ------
@@ -111,8 +111,8 @@ def from_allowed(
     Parameters
     ----------
     allowed
-        By name, in the unit of each or with its own; every input, and at least one state. The other states are not
-        weighed.
+        Allowed deviations by name, in the unit of each variable or with a unit of their own: of every input, and of at
+        least one state. The other states are not weighed.
 
     Raises
     ------

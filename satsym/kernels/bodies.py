@@ -38,9 +38,9 @@ class Unexpected(Exception):
     Parameters
     ----------
     line
-        Where, counted from 1.
+        Number of the line, counted from 1.
     reason
-        What, in a few words.
+        What is wrong with it, in a few words.
     """
 
     def __init__(self, line: int, reason: str) -> None:
@@ -67,7 +67,7 @@ class Body:
     Parameters
     ----------
     signature
-        Its arguments and the shape of its result.
+        Arguments of the function and shape of its result.
     sizes
         Number behind each letter, see :func:`satsym.kernels.contract.sizes`.
     form

@@ -71,7 +71,7 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
     at
         Arguments by name, as :func:`random_places` gives them.
     seed
-        Of the copies aside of the places, by which sizes are told.
+        Seed of the displaced copies of the places, from which the sizes of functions are found.
     """
     found = _largest_of(_contradictions(kernels, at, seed, Evaluation, _loops))
     if found is None or found.deviation <= LIMIT or kernels.text is None:

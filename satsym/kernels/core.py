@@ -34,7 +34,7 @@ def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str,
     Parameters
     ----------
     functions
-        Those of one module, by name.
+        Functions of one module by name.
     cache
         Whether machine code is kept beside the module's file. numba reads such a cache with pickle, so a
         folder that is not trusted must not offer one.

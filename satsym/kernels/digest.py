@@ -22,16 +22,14 @@ _MOST_BYTES = 10_000_000
 
 
 def sealed(text: str, folder: Path | None = None, stating: Mapping[Path, str] | None = None) -> str:
-    """Return the text of a module with its digests in the docstring, in place of those it has.
-
-    Those that it has already are replaced.
+    """Return the text of a module with its digests in the docstring; any earlier digests are replaced.
 
     Parameters
     ----------
     folder
-        Where the module is to lie.
+        Folder for which the module is written.
     stating
-        The derivation files that it was made of, that with its problem first, with their digests.
+        Derivation files from which the module was made, with their digests; the file that states the problem is first.
     """
     bare = _SOURCE.sub("", _without(text))
     end = bare.index("\n", bare.index(_PLACE)) + 1
@@ -56,7 +54,7 @@ def changed(text: str, folder: Path) -> tuple[Path, Path] | None:
     Parameters
     ----------
     folder
-        Where the module lies.
+        Folder of the module.
     """
     head, _, _ = text.replace("\r\n", "\n").partition("MODEL = {")
     found = [(folder / place, digest) for place, digest in _SOURCE.findall(head)]

@@ -55,7 +55,8 @@ def load(model: str, folder: Path | None = None) -> Kernels:
         A shipped name, or a path relative to ``folder``, without ``.py``: ``"DIR/name"``, ``"./name"``, or
         just ``"name"`` where no shipped model has that name.
     folder
-        Where paths start, and what they cannot leave: the instance file's folder. The working folder by default.
+        Folder in which paths start, and which they cannot leave: that of the instance file. By default the working
+        folder.
 
     Raises
     ------
@@ -88,9 +89,9 @@ def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     Parameters
     ----------
     text
-        What a generated file would hold.
+        Contents of a generated file.
     folder
-        Where it would be, or was.
+        Folder to which the file belongs, or belonged.
 
     Raises
     ------

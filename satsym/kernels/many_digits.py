@@ -41,7 +41,7 @@ def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]
     Parameters
     ----------
     text
-        Of a module that :func:`satsym.kernels.from_text` has accepted.
+        Text of a module that :func:`satsym.kernels.from_text` has accepted.
     written
         Floats -> the numbers that they are the nearest ones of, where these are known.
     """
@@ -51,9 +51,9 @@ def functions_of(text: str, written: Mapping[float, Any]) -> dict[str, Function]
 def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function, dict[int, Any]]]:
     """Return the functions of a module that have conditions, each with the record that its calls fill.
 
-    That is, by the number of a condition in the function, the difference of both its sides. Conditions are comparisons,
-    steps, choices of the smaller or larger number, and zero times a root, which is no number where the law is none.
-    Those that steer an iteration are left out.
+    The record contains, by the number of a condition in the function, the difference of the two sides of the condition.
+    Conditions are comparisons, steps, choices of the smaller or larger number, and zero times a root, which is
+    undefined where the law is. Conditions within an iteration are left out.
     """
     found = {}
     for node in ast.parse(text).body:
@@ -187,7 +187,7 @@ def loops(
     text
         The functions by name, as :func:`functions_of` makes them.
     place
-        Where states and costates begin, and parameters.
+        Initial states, final costates, and parameters.
     along
         Times, and controls at these and between them, shapes (N+1,), (m, N+1) and (m, N).
     """

@@ -164,7 +164,7 @@ def theorem(statement: Statement, laws: Sequence[Law], radius: float, convexity:
     radius
         The radius of the box that holds one extremal only, relative to the sizes.
     convexity, waits
-        In what the problem is convex, and why nobody arrives earlier, in words; empty where that is not known.
+        Why the problem is convex, and why no motion arrives earlier, in words; empty if that is not known.
     """
     one = (
         f"There is exactly one extremal of this structure within a distance of {radius:g}, relative to the sizes of "

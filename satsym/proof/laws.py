@@ -182,9 +182,9 @@ class AtLevels(Law):
     Parameters
     ----------
     levels
-        For each control the values that may be best, in order.
+        For each control, the values that may be optimal, in increasing order.
     held
-        Which of them each control has.
+        For each control, the index of its value among its levels.
     """
 
     def __init__(

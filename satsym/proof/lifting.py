@@ -31,14 +31,14 @@ class Lifted(BallKernel):
     Parameters
     ----------
     model
-        The kernels that floats are computed with.
+        The kernels of the model for floats.
     places
         Places of the parameters that are states.
     clocked
-        Whether time is a state; what the argument ``t`` says is then of no account.
+        Whether time is a state; the argument ``t`` is then ignored.
     on_reference
-        Places of the states that end on the reference, which may depend on what is free: these are constraints at the
-        end, before all others.
+        Places of the states that end on the reference, which may depend on free numbers; these conditions are
+        constraints at the end, before all others.
     """
 
     def __init__(self, model: Kernels, places: Sequence[int], clocked: bool, on_reference: Sequence[int]) -> None:

@@ -56,15 +56,15 @@ def prove(case: Instance, find: Callable[[], Solution], digits: int = 20) -> Pro
     case
         The problem as it was stated.
     find
-        Solves it, to know where to look; nothing that the answer claims is used. It is asked only of problems that a
-        theorem covers.
+        Function that solves the problem, so that the proof knows where to look; no claim of the solution is used. It
+        is called only if a theorem covers the problem.
     digits
         Significant digits of the enclosures.
 
     Returns
     -------
     Proof
-        Also where nothing is proved: ``status`` and ``reason`` say why.
+        The record of the proof; if nothing is proved, ``status`` and ``reason`` say why.
     """
     begun = time.perf_counter()
     record = _tried(Proof(case.model.spec.name, case.called, Outcome.NOT_PROVED, digits=digits), partial(_first, case))

@@ -65,9 +65,9 @@ class Theorem:
     Attributes
     ----------
     name, source
-        What it is called, and where it stands.
+        Name of the theorem, and the publication that contains it.
     claims
-        What is claimed of this problem, a sentence each.
+        Sentences that state what follows for this problem.
     """
 
     name: str
@@ -82,11 +82,11 @@ class Hypothesis:
     Attributes
     ----------
     name
-        What must hold.
+        Statement of the hypothesis.
     shown
-        How it was shown.
+        Method by which it was shown.
     value
-        The number that says so, as text.
+        Figures that support it, as text.
     """
 
     name: str
@@ -110,21 +110,23 @@ class Proof:
     Attributes
     ----------
     model, instance, status, reason
-        What was proved, and where it ended: which step fails or which feature is not covered; empty where it is proved.
+        Names of the model and the instance, the outcome, and the reason why nothing is proved: the step that fails, or
+        the feature that is not covered.
     theorem, hypotheses
-        ``None`` and those that were shown so far, where it is not proved.
+        The theorem, ``None`` if nothing is proved, and the hypotheses that were shown.
     costate_initial, x_final, t_final, objective, switching_times
         Enclosures; empty or ``None`` where there is no extremal.
     nodes
-        Along the extremal.
+        States and costates at some times along the extremal.
     scope
-        In words: which problem, and among which motions it is best.
+        Sentences that state the problem, and the motions among which the extremal is the best.
     numbers
         The numbers of the problem as they were read, by name.
     unique_within
-        How far from the located one, relative to the sizes, there is no other extremal of this structure.
+        Distance from the extremal, relative to the sizes of its components, within which there is no other extremal of
+        this structure.
     digits, wall_s
-        How many digits were asked for, and how many seconds the proof took.
+        The number of digits that was requested, and the seconds that the proof took.
     """
 
     model: str

@@ -46,12 +46,12 @@ class Junction:
     leaving, entering
         The condition of the former arc that vanishes at its end, and that of the latter at its beginning.
     order
-        How many times it vanishes there: once with a slope, twice where a boundary is touched, three times where it is
+        Order of the zero of these conditions: one with a slope, two where a boundary is touched, three where it is
         entered or left.
     vanishing
-        What the junction asks for, of series at its node.
+        Function from series at the node of the junction to quantities that vanish there.
     slope
-        Where the costates jump, by a multiple of this that is unknown; else empty.
+        Vector of which an unknown multiple is subtracted from the costates; empty where they do not jump.
     """
 
     leaving: Key
@@ -74,7 +74,7 @@ class Box:
     Attributes
     ----------
     nodes, around
-        All components of each node; those of the first that are given have their own radius in `nodes`.
+        All components of each node; given components of the first node have their own radius in `nodes`.
     lengths, lengths_around
         Lengths of the arcs, after them the multiples of junctions at which costates jump, then the multipliers of
         constraints at the end.
@@ -93,7 +93,7 @@ class Segment:
     Attributes
     ----------
     point
-        Where the midpoint of the box leads.
+        End of the motion from the midpoint of the box.
     derivative
         Derivatives of the final components by those at the node, over the box.
     rates
@@ -101,8 +101,8 @@ class Segment:
     steps
         The steps of the integration.
     deviations, errors
-        How far, at the start of each step, motions of the box are from the one of the midpoint, and how far that one is
-        from the midpoint of the step.
+        At the start of each step, distances of the motions from the box from the motion of its midpoint, and of this
+        motion from the midpoint of the step.
     """
 
     point: list[Ball]

@@ -53,11 +53,11 @@ class Target:
     Attributes
     ----------
     value
-        Where it is given; ``None`` where it is on the reference.
+        Given value; ``None`` for a state on the reference.
     side
         The end of its range that is met; ``None`` where the value is given.
     turns
-        How many whole turns are added to an angle that counts modulo a turn; ``None`` for what does not.
+        Number of whole turns that are added to an angle counted modulo a turn; ``None`` for other states.
     """
 
     value: Ball | None
@@ -74,7 +74,7 @@ class Statement:
     bounds
         The argument of that name: constants, infinite floats, and what regularises nothing.
     targets
-        What final states must be, by the place of the state; one that is not there is free.
+        Conditions on final states by the place of the state; a state without one is free.
     open_ranges
         The ends between which free final states must lie, by the place of the state.
     free

@@ -44,25 +44,25 @@ class Study:
     Attributes
     ----------
     instance
-        What is varied.
+        The instance whose numbers are varied.
     design
-        Which values.
+        The grid or sample of values.
     command
-        What is done with each row.
+        The command that is applied to each row.
     checked
-        Which certificate answers get, of ``solve``.
+        The extent of certificates, for ``solve``.
     feedback
-        Of ``simulate``.
+        The control law, for ``simulate``.
     compiled
         Whether kernels are compiled.
     trajectories
         Whether trajectories are kept.
     table
-        What its table is written as.
+        The file format of the table.
     subject
-        How a command line names the instance.
+        Name of the instance on the command line.
     settings
-        Numbers of it that were given beside it, by key: the instance has them already.
+        Values that were set beside the instance file, by key; the instance contains them already.
     """
 
     instance: Instance

@@ -41,14 +41,14 @@ def asked(
     Parameters
     ----------
     written, case
-        What is varied, as it was written and as it was read.
+        The instance whose numbers are varied, as it was written and as it was read.
     said
         Keys of the table ``[study]`` and their values, instead of those there; ``None`` leaves a key to the table.
         If anything varies by this, what varies by the table is left aside.
     subject
-        How a command line names the instance.
+        Name of the instance on the command line.
     settings
-        Other values of some numbers, by key, that all rows have.
+        Other values of some numbers by key, for all rows.
 
     Raises
     ------

@@ -235,7 +235,7 @@ def jumping(places: Array, values: Array) -> NDArray[np.bool_]:
     Parameters
     ----------
     places
-        Of the rows on the line, shape (rows,).
+        Places of the rows on their line, shape (rows,).
     values
         Shape (rows, quantities).
     """
@@ -275,9 +275,9 @@ def followed(study: Study, found: Iterator[tuple[int, list[float], Row]], execut
     Parameters
     ----------
     found
-        Rows as they were computed: number, values, and what came of each.
+        Computed rows: number, values and result of each.
     executor
-        Runs comparisons somewhere.
+        Executor that computes comparisons.
     """
     known, packed = Branches.of(study, found), chunks.pack(study)
     scouts = known.scouts()

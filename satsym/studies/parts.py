@@ -55,18 +55,18 @@ class Parts:
     Parameters
     ----------
     lines, arrays
-        The files.
+        The two open files.
     study
-        Digest of the study that they are of.
+        Digest of the study to which the chunks belong.
 
     Attributes
     ----------
     done
-        Where each chunk lies that counts, by its number.
+        Places of the complete chunks by number.
     failures
-        Rows among them without an answer.
+        Number of rows without an answer in these chunks.
     rows
-        All rows among them.
+        Number of all rows in these chunks.
     """
 
     def __init__(self, lines: IO[bytes], arrays: IO[bytes], study: str) -> None:
@@ -170,7 +170,7 @@ def opened(folder: Path, study: str) -> Iterator[Parts]:
     Parameters
     ----------
     study
-        Digest of the study that they are of.
+        Digest of the study to which the chunks belong.
 
     Raises
     ------

@@ -65,13 +65,13 @@ class Row:
     Attributes
     ----------
     key
-        What its result depends on, see :func:`satsym.studies.asked.keys_of`.
+        Digest of everything that the result depends on, see :func:`satsym.studies.asked.keys_of`.
     status, message
-        How it ended: of a solver, or of :class:`Failure`.
+        The status of the solver, or of :class:`Failure`, and its explanation.
     numbers
-        By the name of the column; ``None`` where there is none.
+        Entries by the name of the column; ``None`` for missing ones.
     trajectory
-        Arrays by name, where trajectories are kept and there is one.
+        Arrays by name; empty without a trajectory, or where trajectories are not kept.
     """
 
     key: str

@@ -28,11 +28,11 @@ class Advance:
     Attributes
     ----------
     done, failures, total
-        Rows that are kept, those among them without an answer, and all.
+        Numbers of rows that are kept, of those among them without an answer, and of all rows.
     begun, seconds
-        Rows that were kept before this run, and how long it has been going on.
+        Number of rows that were kept before this run, and the seconds that this run has taken.
     compiling
-        Whether machine code may be being made just now.
+        Whether kernels may be being compiled.
     """
 
     done: int
@@ -73,19 +73,19 @@ def run(
     Parameters
     ----------
     study
-        What is asked.
+        The statement of the study.
     parts
-        What is there, to which the rest is added.
+        The chunks that are saved already, to which the others are added.
     executor
-        Runs chunks somewhere.
+        Executor that computes chunks.
     at_once
-        Chunks that are under way at a time.
+        Number of chunks that are computed at a time.
     watch
-        Called after each chunk, and at times without one, with how far the study is.
+        Function that is called with the progress of the study after each chunk, and from time to time.
     work
-        What computes a chunk.
+        Function that computes a chunk.
     log
-        Called with a line for each chunk that was kept, and for each worker that died.
+        Function that is called with a line for each chunk that was kept, and for each worker that died.
 
     Raises
     ------

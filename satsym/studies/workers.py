@@ -55,7 +55,7 @@ class Workers(Executor):
     Parameters
     ----------
     count
-        Processes: so many calls are under way at once, and submitting another waits for one to be over.
+        Number of processes, and of calls at a time; submitting another call waits until one of them is over.
     """
 
     def __init__(self, count: int) -> None:
@@ -177,7 +177,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
     Parameters
     ----------
     address
-        Of the scheduler, such as ``tcp://192.168.0.1:8786``.
+        Address of the scheduler, such as ``tcp://192.168.0.1:8786``.
 
     Raises
     ------

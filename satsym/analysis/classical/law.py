@@ -139,7 +139,7 @@ def simulate(instance: Instance) -> Simulation:
     Returns
     -------
     Simulation
-        Its controls leave out the impulse at the beginning; `metrics` has it.
+        The motion; its controls leave out the impulse at the beginning, which is in `metrics`.
 
     Raises
     ------

@@ -35,7 +35,7 @@ def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> d
     Parameters
     ----------
     spans
-        Its parts in order.
+        Parts of the motion, in order.
     impulse
         Integral of the first control over the moment at which the motion begins, which `spans` leave out.
 
@@ -194,7 +194,7 @@ def performance(
     follows
         Place of the state.
     before, command
-        Its values before and after the step.
+        Values of the state before the step, and commanded after it.
     """
     from scipy.optimize import minimize_scalar
 

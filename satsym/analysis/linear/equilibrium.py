@@ -167,11 +167,11 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
     Parameters
     ----------
     start
-        Where to look from, shape (n,).
+        Initial point of the search, shape (n,).
     t
-        Time, where the model knows it.
+        Time, for models that depend on time.
     where
-        How a message calls the model.
+        Name of the model in messages.
 
     Returns
     -------

@@ -93,7 +93,7 @@ def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
     Parameters
     ----------
     A, B
-        Of a scaled system.
+        Matrices of a system in suitable units, shapes (n, n) and (n, m).
 
     Returns
     -------
@@ -102,7 +102,7 @@ def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
     basis : array of shape (n, n)
         The coordinates, as columns.
     form : array of shape (n, n)
-        A in them; below its first r rows the first r columns vanish.
+        The matrix A in these coordinates; below the first r rows, its first r columns vanish.
     """
     n = len(A)
     basis, form, block, reached = np.eye(n), A.copy(), B, 0

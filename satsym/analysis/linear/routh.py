@@ -58,16 +58,17 @@ class Routh:
 def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -> Routh:
     """Return the Routh array of a polynomial.
 
-    Whole numbers and fractions are reckoned with exactly. Of floats the array says what their roots say, never anything
-    else: where rounding would have it contradict them, it is the exact array of the polynomial that has these roots.
+    Arithmetic with whole numbers and fractions is exact. For floats, the array never contradicts the roots: where
+    rounding errors would make it do so, the exact array of the polynomial with these roots is returned.
 
     Parameters
     ----------
     coefficients
         Highest power first, the first one not zero.
     roots
-        Of floats, each as often as it occurs, complex ones with their conjugates; those that count as lying on the
-        imaginary axis exactly there. By default eigenvalues of the companion matrix.
+        Roots of the polynomial, needed only where the coefficients are floats: each as often as it occurs, complex ones
+        with their conjugates, and those that count as lying on the imaginary axis exactly there. By default the
+        eigenvalues of the companion matrix.
 
     Raises
     ------

@@ -121,9 +121,9 @@ def system(
     states, inputs, outputs
         Names; by default x1, x2, ...; u1, ...; y1, ...
     name
-        Of the system.
+        Name of the system.
     exact
-        The same exactly, where that is known.
+        The exact A, B and C, where they are known.
 
     Raises
     ------

@@ -20,11 +20,11 @@ from satsym.arrays import Array
 from satsym.status import BadInput
 
 TOLERANCE = 1e-12
-"""One for all: some ten thousand roundings of the numbers an orbit starts with, and far below what is ever measured.
+"""Largest deviation of circles, parabolas and rectilinear orbits from their definitions.
 
-A circle has an eccentricity up to this. On a parabola the square of the speed is that of escape within this share. A
-rectilinear orbit is one whose velocity is along the radius within this angle. What is farther away is not so called:
-a nearly circular ellipse is an ellipse.
+It limits the eccentricity of a circle, the relative difference of the square of the speed on a parabola from that of
+escape, and the angle between velocity and radius of a rectilinear orbit. It is some ten thousand times the rounding
+error of the numbers an orbit starts with, and far below what is ever measured. A nearly circular ellipse is an ellipse.
 """
 
 
@@ -44,12 +44,12 @@ def classify(eccentricity: float, shortfall: float, sine: float) -> Conic:
     Parameters
     ----------
     eccentricity
-        From 0.
+        Eccentricity, not negative.
     shortfall
-        By how much the square of the speed falls short of that of escape, as a share of the latter: 1 at rest, 0 on
-        a parabola, negative on a hyperbola. It is minus the energy in units of mu/r.
+        Difference of the square of the speed of escape and that of the speed, as a fraction of the former: 1 at rest, 0
+        on a parabola, negative on a hyperbola. It is minus the energy in units of mu/r.
     sine
-        Of the angle between radius and velocity; 0 at rest.
+        Sine of the angle between radius and velocity; 0 at rest.
     """
     if sine <= TOLERANCE:
         return Conic.RECTILINEAR
@@ -73,31 +73,34 @@ class Elements:
     position, velocity, mu
         The start, shape (3,) each, and the gravitational parameter.
     conic
-        See :mod:`satsym.analysis.orbits.elements`.
+        Kind of conic section.
     eccentricity, parameter
         Eccentricity, and semi-latus rectum.
     energy
-        Per unit mass.
+        Energy per unit mass.
     angular_momentum
-        Per unit mass, shape (3,).
+        Angular momentum per unit mass, shape (3,).
     semi_major_axis
-        Negative on a hyperbola, ``None`` on a parabola.
+        Semi-major axis; negative on a hyperbola, ``None`` on a parabola.
     periapsis, apoapsis
         Distances from the centre; the latter ``None`` where there is none.
     period
-        ``None`` where nothing returns: on parabolas, hyperbolas and rectilinear orbits.
+        Time of a revolution; ``None`` on parabolas, hyperbolas and rectilinear orbits.
     excess_speed
-        That remains at infinity; ``None`` on a bound orbit.
+        The speed that remains at infinity; ``None`` on a bound orbit.
     inclination
-        To the plane of the first two axes, from 0 to pi, so that retrograde orbits are above pi/2.
+        Angle to the plane of the first two axes, from 0 to pi; it is above pi/2 for retrograde orbits.
     node
         Longitude of the ascending node, ``None`` on an equatorial orbit.
     periapsis_argument
-        From the node, along the motion; on an equatorial orbit from the first axis. ``None`` on a circle.
+        Argument of the periapsis, counted from the node along the motion, and on an equatorial orbit from the first
+        axis; ``None`` on a circle.
     true_anomaly
-        Of the start, from the periapsis; on a circle from the node, or where there is none from the first axis.
+        True anomaly of the start, counted from the periapsis; on a circle from the node, or without a node from the
+        first axis.
     towards, ahead, normal
-        Unit vectors, shape (3,): to where the true anomaly is zero, along the motion there, and of the plane.
+        Unit vectors, shape (3,): towards the point of true anomaly zero, along the motion there, and normal to the
+        plane of the orbit.
 
     On a rectilinear orbit all angles are ``None``, and ``towards`` points to the start.
     """

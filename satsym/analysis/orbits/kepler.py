@@ -55,7 +55,7 @@ def propagate(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration:
     mu
         Gravitational parameter of the centre, such as in km**3/s**2; shape (...).
     duration
-        May be negative, or many revolutions; shape (...). All trailing shapes are broadcast.
+        Length of time, which may be negative, or many revolutions; shape (...). All trailing shapes are broadcast.
 
     Returns
     -------

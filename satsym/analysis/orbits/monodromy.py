@@ -142,13 +142,13 @@ def transition(
     Parameters
     ----------
     model, p
-        Which, and its parameters.
+        The model and its parameters.
     start
         State at t0, shape (n,).
     duration
-        Positive or negative.
+        Length of time; negative to integrate backward.
     t0
-        Where the model knows the time.
+        Initial time, for models that depend on time.
     size
         Typical sizes of the states, shape (n,); 1 by default. Errors are counted in them.
 

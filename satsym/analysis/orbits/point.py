@@ -99,9 +99,9 @@ def at_start(case: Instance, orbit: Elements) -> Point:
     Parameters
     ----------
     case
-        Whose own Jacobian is taken, too.
+        The instance; the Jacobian of its model in its own coordinates is analysed as well.
     orbit
-        Its orbit, whose start is that state in Cartesian coordinates.
+        The orbit of the instance, whose start is the initial state in Cartesian coordinates.
     """
     scaled, (length,), (speed,) = checked(orbit.position, orbit.velocity, orbit.mu, 0.0).scaled()
     start = np.concatenate([scaled.position[:, 0], scaled.velocity[:, 0]])

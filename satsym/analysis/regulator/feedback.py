@@ -303,7 +303,7 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
     about, found
         The linearisation, and a regulator of it with an infinite horizon.
     case
-        Whose bounds on the control hold; none by default.
+        An instance whose bounds on the controls hold; by default there are no bounds.
 
     Raises
     ------

@@ -155,9 +155,9 @@ def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regula
     Parameters
     ----------
     about
-        Whose coefficients must be constant.
+        The linearisation, whose coefficients must be constant.
     options
-        Of an instance; by default all inputs are active, and all weights are 1.
+        The table [lqr] of an instance; by default all inputs are active, and all weights are 1.
 
     Raises
     ------

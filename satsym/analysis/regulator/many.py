@@ -188,7 +188,7 @@ def regulators(instances: Sequence[Instance]) -> Regulators | None:
     Parameters
     ----------
     instances
-        Of one model, with the same weights and inputs.
+        Instances of one model, with the same weights and inputs.
     """
     first = instances[0]
     spec, options = first.model.spec, first.lqr

@@ -68,9 +68,9 @@ class Finding:
     Attributes
     ----------
     name, value, note
-        What, what was found, and a remark.
+        What was checked, what was found, and a remark.
     fine
-        Whether it is as it should be.
+        Whether the result is as it should be.
     required
         Whether anything fails without it.
     """

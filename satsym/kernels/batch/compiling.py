@@ -64,9 +64,9 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     Parameters
     ----------
     name
-        Of the model.
+        Name of the model.
     text
-        What was written for it; only we write such texts.
+        Source text that satsym wrote for the model.
     """
     import numba
 

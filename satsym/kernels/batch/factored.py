@@ -48,9 +48,9 @@ class Arithmetic:
     Parameters
     ----------
     tape
-        That their values are on.
+        Tape that contains the values.
     scales
-        By which the first quotients of something that never changes are multiplied, which costs nothing.
+        Factors of the first quotients of something that never changes; multiplying by them costs nothing.
     late
         Whether values that never change are multiplied in late.
     """

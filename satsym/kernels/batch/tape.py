@@ -136,9 +136,9 @@ def bound(tape: Tape, given: Mapping[str, Array], results: Mapping[int, Array], 
     given
         Arrays by name.
     results
-        Values that are wanted, each an operation, and where they go.
+        Requested values, each of them an operation, and the arrays to which they are written.
     buffers
-        For all others.
+        Buffers for all other values.
     """
     needed = tape.needed(results)
     last = {operand: value for value in needed for operand in _operands(tape, value)}

@@ -127,13 +127,13 @@ def inlined(text: str, function: str, loads: Loads, prefix: str) -> Inlined:
     Parameters
     ----------
     text
-        Of a generated module.
+        Text of a generated module.
     function
         Name of a scalar form.
     loads
-        Where its arguments come from.
+        Expressions for the arguments of the function.
     prefix
-        Of all names in the lines.
+        Prefix of all names in the lines.
     """
     definition = _definition(text, function)
     arguments = {argument.arg for argument in definition.args.args}

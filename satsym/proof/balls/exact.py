@@ -78,7 +78,7 @@ class Source:
         Parameters
         ----------
         value
-            What solvers compute with.
+            The float with which solvers compute.
         unit
             The unit of `value`; a text may carry another one.
         """

@@ -50,7 +50,7 @@ class Step:
     Attributes
     ----------
     h
-        Its length; where that is a ball, the step holds for each length in it.
+        Length of the step; if it is a ball, the step holds for each length in it.
     range
         Balls that no motion from `z` leaves.
     middle
@@ -63,7 +63,7 @@ class Step:
     costs
         Coefficients of the cost so far along the motion from the midpoint, the last one within the step.
     terms
-        How many coefficients these series have before the last one.
+        Number of coefficients of these series before the last one.
     """
 
     h: Ball
