@@ -110,8 +110,12 @@ def processes(wanted: int | None, chunks: int) -> int:
             f"workers: the number of workers must be positive, not {shown(wanted)}; give a whole number of at "
             "least 1, or leave it out"
         )
-    able = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(wanted or able, chunks)
+    return min(wanted or usable_processors(), chunks)
+
+
+def usable_processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _begun() -> _Process:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -101,6 +100,7 @@ def measured_steps(subject: Instance | Kernels, seconds: float) -> Iterator[dict
     from satsym.kernels.batch import compiling
     from satsym.kernels.blocks import block_step
     from satsym.solvers.simulation.batch import simulate
+    from satsym.studies.workers import usable_processors
 
     model = subject if isinstance(subject, Kernels) else subject.model
     x, p = _columns(subject)
@@ -110,7 +110,7 @@ def measured_steps(subject: Instance | Kernels, seconds: float) -> Iterator[dict
     if not compiling.able():
         return
     advance, controls = block_step(model.compiled()), np.zeros((len(model.spec.controls), COLUMNS))
-    for count in sorted({1, cores()}):
+    for count in sorted({1, usable_processors()}):
         ends = np.linspace(0, COLUMNS, count + 1).astype(int)
         parts = [
             tuple(np.ascontiguousarray(rows[:, low:high]) for rows in (x, controls, p)) for low, high in pairwise(ends)
@@ -173,21 +173,18 @@ def measured_solution(instance: Instance) -> tuple[Status, dict[str, Any]]:
     return found.status, {"method": found.method, "solve_s": took, "certificate_s": certificate}
 
 
-def cores() -> int:
-    """Return the number of processor cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def _machine() -> dict[str, Any]:
     """Return the object that describes this machine."""
     import platform
 
     import numpy as np
 
+    from satsym.studies.workers import usable_processors
+
     return {
         "system": platform.system(),
         "processor": platform.machine(),
-        "cores": cores(),
+        "cores": usable_processors(),
         "python": platform.python_version(),
         "numpy": np.__version__,
     }
