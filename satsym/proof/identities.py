@@ -18,9 +18,8 @@ from satsym.proof.balls.arithmetic import Answers, Ball, BeyondProof, NotProved,
 from satsym.proof.balls.jets import OPAQUE, derivatives, variables
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled, norms
 from satsym.proof.laws import derivatives as partials
-from satsym.proof.mixed import OnMixed
 from satsym.proof.statement import Statement
-from satsym.proof.walls import OnBoundary, Pushed
+from satsym.proof.walls import OnBoundary, OnMixed, Pushed
 
 POINTS = 3
 SEED = 20260

@@ -13,7 +13,7 @@ from typing import Any
 from flint import arb, ctx
 
 from satsym.instance import Instance
-from satsym.proof import claims, inclusion, mixed, structure, walls
+from satsym.proof import claims, inclusion, structure, walls
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved
 from satsym.proof.balls.taylor import Order, column, rates, unit
 from satsym.proof.field import regular_field
@@ -176,7 +176,7 @@ def _begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting
     if walled(statement):
         laws, junctions, times, jumps = walls.structured(statement, found)
     elif statement.spec.path_constraints:
-        laws, junctions, times = mixed.structured(statement, found)
+        laws, junctions, times = walls.structured_mixed(statement, found)
     else:
         laws, times = structure.arcs(statement, found, path)
         junctions = [Junction.between(a, b) for a, b in pairwise(laws)]

@@ -12,9 +12,8 @@ from satsym.proof.balls.jets import OPAQUE
 from satsym.proof.balls.taylor import Step, polynomial, rates
 from satsym.proof.ends import positive
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
-from satsym.proof.mixed import OnMixed
 from satsym.proof.shooting import Junction, Pass, Shooting
-from satsym.proof.walls import OnBoundary, require_push
+from satsym.proof.walls import OnBoundary, OnMixed, require_push
 
 DEEPEST = 16
 """Largest number of times that a step is halved to prove a sign on it."""

@@ -1,8 +1,14 @@
-"""Arcs on and beside the boundaries of path constraints of order one or two that are linear in the states.
+"""Arcs on and beside the boundaries of path constraints.
 
-On a boundary the controls keep the first or the second rate of the constraint at zero, and the rates of the costates
-have a multiple of its gradient in addition; where a boundary of order two is entered, left or touched the costates jump
-by such a multiple (direct adjoining). In a convex problem, non-negative multiples make the extremal a global minimum.
+Constraints on states are of order one or two and linear in the states. On their boundary the controls keep the first or
+the second rate of the constraint at zero, and the rates of the costates have a multiple of its gradient in addition;
+where a boundary of order two is entered, left or touched the costates jump by such a multiple (direct adjoining). In a
+convex problem, non-negative multiples make the extremal a global minimum.
+
+A mixed constraint is one on states and one control together, which limits the control by the states. On its boundary
+the control follows from the boundary, and the rates of the costates have a multiple of its gradient as well. As the
+multiplier vanishes where the arc begins or ends, H as minimised over the admissible controls is differentiable once,
+and the field of extremals is as for bounds of the controls.
 """
 
 from __future__ import annotations
@@ -10,6 +16,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from flint import arb_series, ctx
@@ -129,8 +136,35 @@ class OnBoundary(Pushed):
         return wall(self.which)
 
 
+class BesideMixed(BesideWalls):
+    """An arc on which no mixed constraint is active, next to arcs on which one is."""
+
+    def leaving(self, other: Law) -> Key:
+        return wall(other.which) if isinstance(other, OnMixed) else super().leaving(other)
+
+
+class OnMixed(Pushed):
+    """An arc on the boundary of a mixed constraint."""
+
+    def control(self, z: Sequence[Series]) -> Sequence[Series]:
+        t, x, lam = self.parts(z)
+        return [self.kernel.boundary_control(t, x, lam, self.p, ())[self.which] + constant(0)]
+
+    def gradient(self, z: Sequence[Series]) -> list[Series]:
+        t, x, _ = self.parts(z)
+        found = self.kernel.path_gradient(t, x, self.control(z), self.p)
+        return [v + constant(0) for v in found[self.n * self.which : self.n * (self.which + 1)]]
+
+    def conditions(self, z: Sequence[Series]) -> list[tuple[Key, Series]]:
+        others = [(wall(k), -v) for k, v in enumerate(levels(self, z)) if k != self.which]
+        return [(("path_multiplier", self.which), self.multiplier(z)), *others]
+
+    def leaving(self, other: Law) -> Key:
+        return ("path_multiplier", self.which)
+
+
 def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float], list[float]]:
-    """Return laws, junctions, times and jumps of the costates of an answer whose events are known."""
+    """Return laws, junctions, times and jumps of the costates of an answer with constraints on states."""
     kernel, p = statement.kernel, statement.p
     names = [one.name for one in statement.spec.path_constraints]
     laws: list[Law] = [BesideWalls(kernel, p, ())]
@@ -155,6 +189,32 @@ def structured(statement: Statement, found: Solution) -> tuple[list[Law], list[J
         times.append(event.t)
         jumps += [] if first else [_jump(found, event.t, slope)]
     return laws, junctions, [*times, float(found.times[-1])], jumps
+
+
+def structured_mixed(statement: Statement, found: Solution) -> tuple[list[Law], list[Junction], list[float]]:
+    """Return laws, junctions and times of an answer with mixed constraints whose events are known.
+
+    Raises
+    ------
+    BeyondProof
+        If these are other than beginnings and ends of arcs on boundaries.
+    """
+    kernel, p = statement.kernel, statement.p
+    names = [one.name for one in statement.spec.path_constraints]
+    laws: list[Law] = [BesideMixed(kernel, p, ())]
+    times = [float(found.times[0])]
+    for event in found.events:
+        entered = event.kind == "entry"
+        if event.kind not in ("entry", "exit") or isinstance(laws[-1], OnMixed) is entered:
+            raise BeyondProof("a structure of boundary arcs that is not recognised")
+        following = OnMixed(kernel, p, names.index(event.name)) if entered else BesideMixed(kernel, p, ())
+        if event.t <= times[0]:
+            laws = [following]
+        elif event.t < found.times[-1]:
+            laws.append(following)
+            times.append(event.t)
+    junctions = [Junction.between(a, b) for a, b in pairwise(laws)]
+    return laws, junctions, [*times, float(found.times[-1])]
 
 
 def _first(boundary: OnBoundary, law: Law, count: int, z: Sequence[Series]) -> list[Series]:
@@ -182,15 +242,3 @@ def require_push(law: OnBoundary, steps: Sequence[Step]) -> None:
         push = value(law.multiplier([arb_series([v]) for v in step.range]))
         if not push >= 0:
             raise NotProved("the multiplier of a path constraint on its boundary could not be shown to be nonnegative")
-
-
-def require_jumps(jumps: Sequence[Ball]) -> None:
-    """Show that the multipliers of jumps at boundaries are not negative.
-
-    Raises
-    ------
-    NotProved
-        If one may be negative.
-    """
-    if not all(jump >= 0 for jump in jumps):
-        raise NotProved("a jump of the costates at a path constraint could not be shown to be nonnegative")
