@@ -12,7 +12,7 @@ from flint import arb, arb_mat, arb_series, ctx
 from satsym.proof.balls.arithmetic import Ball, NotProved, constant, value
 from satsym.proof.balls.jets import derivatives, variables
 from satsym.proof.balls.taylor import Matrix, rates
-from satsym.proof.laws import Law
+from satsym.proof.laws import Law, hamiltonian
 from satsym.proof.statement import Statement
 
 
@@ -114,7 +114,9 @@ class End:
         (_, s, ss), lam = self.terminal, self.z[n : 2 * n]
         by_multiplier = [slopes[n] for _, slopes in ties]
         ctx.cap = 1
-        total = value(self.law.hamiltonian([arb_series([v]) for v in self.z])) + s[n]
+        here = [arb_series([v]) for v in self.z]
+        t, x, costates = self.law.parts(here)
+        total = value(hamiltonian(self.law.kernel, t, x, self.law.control(here), costates, self.law.p)) + s[n]
         moving = rates(self.law, self.z)
         row = [-v for v in moving[n : 2 * n]] + list(moving[:n]) + [arb(0)] * (m - 2 * n)  # dH = (-lambda', x')
         by_time = ss[n][n] + self.hamiltonian_by_time()
@@ -141,11 +143,7 @@ class End:
         ctx.cap = 1
         u = [constant(value(v)) for v in law.control([arb_series([v]) for v in self.z])]
         ctx.cap = 2
-        moving = arb_series([value(t), 1])
-        total = law.kernel.running_cost(moving, x, u, law.p) + constant(0)
-        for a, b in zip(lam, law.kernel.dynamics(moving, x, u, law.p), strict=True):
-            total = a * b + total
-        return total[1]
+        return hamiltonian(law.kernel, arb_series([value(t), 1]), x, u, lam, law.p)[1]
 
     def second_variation(self, w: Matrix) -> Matrix:
         """Return the form on free final states and final time that must be positive.

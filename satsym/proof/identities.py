@@ -16,7 +16,7 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof.balls.arithmetic import Answers, Ball, BeyondProof, NotProved, constant, value
 from satsym.proof.balls.jets import OPAQUE, derivatives, variables
-from satsym.proof.laws import AtLevels, Law, Regular, Throttled, norms
+from satsym.proof.laws import AtLevels, Law, Regular, Throttled, hamiltonian, norms
 from satsym.proof.laws import derivatives as partials
 from satsym.proof.statement import Statement
 from satsym.proof.walls import OnBoundary, OnMixed, Pushed
@@ -70,18 +70,11 @@ class _Point:
         self.t, self.x, self.lam = law.parts(self.series)
         self.u = [constant(value(v)) for v in law.control(self.series)]
 
-    def hamiltonian(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any]) -> Any:
-        """Return H, from the motion and the running cost alone."""
-        total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
-        for a, b in zip(lam, self.kernel.dynamics(t, x, u, self.p), strict=True):
-            total = a * b + total
-        return total
-
     def by_controls(self, u: Sequence[Any]) -> tuple[Ball, list[Ball], list[list[Ball]]]:
         """Return H, H_u and H_uu at other controls."""
         given = variables([value(v) for v in u])
         return self.elsewhere(
-            lambda: derivatives(lambda: self.hamiltonian(self.t, self.x, given, self.lam), len(given))
+            lambda: derivatives(lambda: hamiltonian(self.kernel, self.t, self.x, given, self.lam, self.p), len(given))
         )
 
     def elsewhere(self, evaluate: Callable[[], Any]) -> Any:
@@ -111,7 +104,7 @@ class _Point:
         answers = self.kernel.answers
 
         def along() -> Any:
-            return derivatives(lambda: self.hamiltonian(self.t, states, self.u, self.lam), self.n)
+            return derivatives(lambda: hamiltonian(self.kernel, self.t, states, self.u, self.lam, self.p), self.n)
 
         _, h_x, _ = self.elsewhere(along)
         self.kernel.answers = answers

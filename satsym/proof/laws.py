@@ -18,6 +18,14 @@ from satsym.proof.balls.kernel import BallKernel
 SIMULTANEOUS = "two bounds are reached or left at the same time; the theorem requires one at a time"
 
 
+def hamiltonian(kernel: BallKernel, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Any) -> Any:
+    """Return H, from the motion and the running cost of a kernel alone."""
+    total = kernel.running_cost(t, x, u, p) + constant(0)
+    for a, b in zip(lam, kernel.dynamics(t, x, u, p), strict=True):
+        total = a * b + total
+    return total
+
+
 class Law(ABC):
     """A law of the controls along an arc.
 
@@ -58,15 +66,6 @@ class Law(ABC):
         """Return the running cost under the law."""
         t, x, _ = self.parts(z)
         return self.kernel.running_cost(t, x, self.control(z), self.p) + constant(0)
-
-    def hamiltonian(self, z: Sequence[Series]) -> Series:
-        """Return H under the law."""
-        t, x, lam = self.parts(z)
-        u = self.control(z)
-        total = self.kernel.running_cost(t, x, u, self.p) + constant(0)
-        for a, b in zip(lam, self.kernel.dynamics(t, x, u, self.p), strict=True):
-            total = a * b + total
-        return total
 
     @abstractmethod
     def control(self, z: Sequence[Series]) -> Sequence[Series]:
