@@ -19,6 +19,7 @@ from satsym.kernels import Kernels
 from satsym.proof.balls.arithmetic import BeyondProof, Series, constant, value
 from satsym.proof.balls.jets import Jet, gradients
 from satsym.proof.balls.kernel import BallKernel
+from satsym.proof.laws import hamiltonian
 from satsym.solution import Solution
 from satsym.spec import Variable
 
@@ -144,16 +145,10 @@ class Lifted(BallKernel):
         finally:
             self.answers.noted = noted
 
-    def _hamiltonian(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> Any:
-        total = self.running_cost(t, x, u, p) + constant(0)
-        for a, b in zip(lam, self.dynamics(t, x, u, p), strict=True):
-            total = b * a + total
-        return total
-
     def _falls(self, t: Any, x: Sequence[Any], u: Sequence[Any], lam: Sequence[Any], p: Sequence[Any]) -> list[Series]:
         """Return the rates of the costates of the additional states."""
         own, more = list(x[: self.own]), list(x[self.own :])
-        slopes = gradients(lambda v: [self._hamiltonian(t, [*own, *v], u, lam, p)], more)
+        slopes = gradients(lambda v: [hamiltonian(self, t, [*own, *v], u, lam, p)], more)
         return [-v for v in slopes]
 
     def _jacobian(
@@ -163,7 +158,7 @@ class Lifted(BallKernel):
         n, m = len(x), len(u)
         given = [Jet(v, {i: constant(1)}) for i, v in enumerate((*x, *u))]
         rates = [_jet(v) for v in self.dynamics(t, given[:n], given[n:], p)]
-        total = _jet(self._hamiltonian(t, given[:n], given[n:], lam, p))
+        total = _jet(hamiltonian(self, t, given[:n], given[n:], lam, p))
 
         def through(slopes: Sequence[Any], j: int) -> Any:
             """Return the effect of the controls when component j changes."""

@@ -42,11 +42,6 @@ def constant(value: Any) -> Series:
         ctx.cap = cap
 
 
-def term(series: Any, k: int) -> Ball:
-    """Return coefficient k of a series."""
-    return series[k]
-
-
 @dataclass
 class Answers:
     """The outcomes of comparisons in generated code along an arc, and the differences that must then be positive.
@@ -78,7 +73,7 @@ class Answers:
             if isinstance(bound, float) and math.isinf(bound):  # where a control has no bound
                 return (bound < 0.0) == side
         difference = b - a
-        answer = self.given.setdefault(key, bool(term(difference, 0).mid() > 0))
+        answer = self.given.setdefault(key, bool(difference[0].mid() > 0))
         if self.noted is not None:
             self.noted.append((key, difference if answer else -difference))
         return answer

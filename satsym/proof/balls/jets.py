@@ -60,7 +60,7 @@ class Jet:
     __radd__, __rmul__ = __add__, __mul__
 
     def _inverse(self) -> Jet:
-        v = _ONE() / self.value
+        v = constant(1) / self.value
         return self._of(v, -(v * v), constant(2) * v * v * v)
 
     def _of(self, v: Any, d: Any, dd: Any) -> Jet:
@@ -84,20 +84,20 @@ class Jet:
         return self._of(e, e, e)
 
     def log(self) -> Jet:
-        d = _ONE() / self.value
+        d = constant(1) / self.value
         return self._of(self.value.log(), d, -(d * d))
 
     def sqrt(self) -> Jet:
         r = self.value.sqrt()
-        d = _ONE() / (constant(2) * r)
+        d = constant(1) / (constant(2) * r)
         return self._of(r, d, -d / (constant(2) * self.value))
 
     def atan(self) -> Jet:
-        d = _ONE() / (_ONE() + self.value * self.value)
+        d = constant(1) / (constant(1) + self.value * self.value)
         return self._of(self.value.atan(), d, constant(-2) * self.value * d * d)
 
     def asin(self) -> Jet:
-        d = _ONE() / (_ONE() - self.value * self.value).sqrt()
+        d = constant(1) / (constant(1) - self.value * self.value).sqrt()
         return self._of(self.value.asin(), d, self.value * d * d * d)
 
     def acos(self) -> Jet:
@@ -107,7 +107,7 @@ class Jet:
     def angle(y: Any, x: Any) -> Jet:
         """Return the angle of a vector of jets, as ``atan2`` does."""
         y, x = _jet(y), _jet(x)
-        r = _ONE() / (x.value * x.value + y.value * y.value)
+        r = constant(1) / (x.value * x.value + y.value * y.value)
         dy, dx = x.value * r, -y.value * r
         first = _sum(_times(y.first, dy), _times(x.first, dx))
         second = _sum(_times(y.second, dy), _times(x.second, dx))
@@ -119,10 +119,6 @@ class Jet:
         ):
             second = _sum(second, _times(_products(a, b, half), d))
         return Jet(constant(arb.atan2(value(y.value), value(x.value))), first, second)
-
-
-def _ONE() -> Any:
-    return constant(1)
 
 
 def _jet(v: Any) -> Jet:
@@ -157,7 +153,7 @@ def variables(values: Sequence[Ball], among: int | None = None) -> list[Jet]:
     """Return variables with these values, the first of which (by default all) are differentiated by."""
     ctx.cap = 1
     count = len(values) if among is None else among
-    return [Jet(constant(v), {i: _ONE()} if i < count else {}) for i, v in enumerate(values)]
+    return [Jet(constant(v), {i: constant(1)} if i < count else {}) for i, v in enumerate(values)]
 
 
 def derivatives(function: Callable[..., Any], count: int) -> tuple[Ball, list[Ball], list[list[Ball]]]:
