@@ -7,17 +7,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import accumulate
+from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx
 
 from satsym.proof import claims
 from satsym.proof.balls.arithmetic import Ball, NotProved, constant, value
 from satsym.proof.balls.jets import derivatives, variables
-from satsym.proof.balls.taylor import Matrix, Order, column, from_zero, unit
+from satsym.proof.balls.taylor import Order, column, from_zero, inverse, unit
 from satsym.proof.laws import Law
 from satsym.proof.record import Enclosure, Hypothesis, Node, Outcome, Proof
 from satsym.proof.shooting import Box, Pass, Segment, Shooting
 from satsym.proof.statement import Statement
+from satsym.proof.structure import Place, started
+
+RADII = (1e-6, 1e-8, 1e-10, 1e-12)
+"""Radii of boxes about the midpoint that are tried in turn, relative to the magnitudes of the unknowns."""
+COARSE = Order(18, 1e-16)
+SPARE = 8
+"""Number of digits that are added to the requested ones in the computation of steps and boxes."""
 
 
 @dataclass(frozen=True)
@@ -45,28 +53,68 @@ def krawczyk(shooting: Shooting, box: Box, order: Order) -> Inclusion:
     return Inclusion(inside, image, passed)
 
 
-def inverse(jacobian: Matrix) -> Matrix:
-    """Return an approximate inverse of a ball matrix, with exact entries.
+@dataclass(frozen=True)
+class Located:
+    """The one extremal in a box, with balls that contain it."""
 
-    Raises
-    ------
-    NotProved
-        If there is none.
-    """
-    if jacobian.nrows() != jacobian.ncols():
-        raise NotProved("the numbers of equations and unknowns differ; two bounds are reached at the same time")
-    try:
-        return jacobian.mid().inv().mid()
-    except ZeroDivisionError:
-        raise NotProved("the equations of the extremal are singular; it may belong to a family of extremals") from None
+    box: Box
+    last: Inclusion
+    radius: float
+
+
+def enclosed(shooting: Shooting, place: Place, digits: int) -> Located:
+    """Show that an extremal exists and is the only one nearby, and enclose it to the wanted digits."""
+    inclusion: Inclusion | None = None
+    for radius in RADII:
+        box = _box(shooting, place, radius)
+        try:
+            inclusion = krawczyk(shooting, box, COARSE)
+        except (NotProved, ArithmeticError, ValueError):
+            continue
+        if inclusion.inside:
+            break
+    if inclusion is None or not inclusion.inside:
+        raise NotProved(
+            "existence: no box around the solution is mapped into itself; more digits or a more accurate solution "
+            "may help"
+        )
+    for spare in (SPARE, 2 * SPARE):
+        order = Order(max(18, int(1.1 * (digits + spare))), 10.0 ** -(digits + spare))
+        box = _box(shooting, place, min(radius / 2, 10.0 ** -(digits / 2 + SPARE)))  # it lies in the former one
+        last = krawczyk(shooting, box, order)
+        if last.inside:
+            break
+    else:
+        raise NotProved("the extremal could not be enclosed to all requested digits; request fewer digits")
+    lengths = zip(box.lengths, box.lengths_around, strict=True)
+    if not all(a + b > 0 for a, b in list(lengths)[: len(shooting.arcs)]):
+        raise NotProved("an arc has no positive length")
+    return Located(box, last, radius)
+
+
+def _box(shooting: Shooting, place: Place, radius: float) -> Box:
+    """Return the box of a radius, relative to the sizes of the unknowns, about the midpoint of a proof."""
+    nodes = _exact(shooting, place.nodes)
+    zero, none = [[arb(0)] * len(node) for node in nodes], [arb(0)] * len(place.lengths)
+    values = [arb(0, radius * s) for s in (*shooting.scales, *shooting.scales_of_lengths(place.lengths))]
+    around, lengths = shooting.placed(values, zero, none)
+    return Box(nodes, around, place.lengths, lengths)
+
+
+def _exact(shooting: Shooting, nodes: list[list[Any]]) -> list[list[Any]]:
+    """Return nodes whose given initial components have the problem's exact values."""
+    n, law = shooting.arcs[0].law.n, shooting.arcs[0].law
+    first = started(shooting.statement, nodes[0], n)
+    return [[*first[: 2 * n], *([shooting.statement.t0] if law.timed else [])], *nodes[1:]]
 
 
 MOST_NODES = 9
 """Largest number of nodes in the record of a proof."""
 
 
-def entered(record: Proof, shooting: Shooting, box: Box, last: Inclusion, radius: float) -> Proof:
+def entered(record: Proof, shooting: Shooting, there: Located) -> Proof:
     """Enter the enclosures of an extremal that exists in the record of its proof."""
+    box, last, radius = there.box, there.last, there.radius
     here = shooting.unknowns(box.nodes, box.lengths)
     nodes, lengths = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
     statement, law = shooting.statement, shooting.arcs[0].law
@@ -110,10 +158,11 @@ def _found(statement: Statement, start: list[Ball], digits: int) -> dict[str, st
     return {name: f"free; {Enclosure.of(start[i], digits).text} is best" for i, name in called.items()}
 
 
-def jumps(shooting: Shooting, box: Box, last: Inclusion) -> list[Ball]:
+def jumps(shooting: Shooting, there: Located) -> list[Ball]:
     """Return, by junction, the multiples of path constraints' gradients by which costates fall."""
+    box = there.box
     here = shooting.unknowns(box.nodes, box.lengths)
-    _, found = shooting.placed([a + v for a, v in zip(here, last.image, strict=True)], box.nodes, box.lengths)
+    _, found = shooting.placed([a + v for a, v in zip(here, there.last.image, strict=True)], box.nodes, box.lengths)
     return list(found[len(shooting.arcs) : len(found) - len(shooting.statement.active)])
 
 

@@ -1,21 +1,27 @@
-"""The arcs of a solver's answer, and nodes on them: where a proof looks for the extremal, and no part of the proof."""
+"""The point at which a proof looks for the extremal; nothing here is part of the proof.
+
+The arcs of a solver's answer are recognised, nodes are placed on them, and Newton's method finds a zero of the
+equations of shooting near these nodes.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import groupby
+from dataclasses import dataclass
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
 from flint import arb, arb_series, ctx
 
+from satsym.proof import walls
 from satsym.proof.balls.arithmetic import Ball, BeyondProof, NotProved, balls
-from satsym.proof.balls.taylor import expand, expand_flow, polynomial, unit
+from satsym.proof.balls.taylor import column, expand, expand_flow, inverse, polynomial, rates, unit
 from satsym.proof.ends import End
 from satsym.proof.laws import AtLevels, Law, Regular, Throttled
-from satsym.proof.shooting import Arc
-from satsym.proof.statement import Statement
+from satsym.proof.shooting import Arc, Box, Junction, Rows, Segment, Shooting
+from satsym.proof.statement import Statement, walled
 from satsym.solution import Solution
 
 GROWTH = 20.0
@@ -30,6 +36,16 @@ NEAR_LEVEL = 1e-6
 """Largest distance of a control from a constant level that it is taken to have, relative to the distance of levels."""
 TOGETHER = 1e-9
 """Distance from a switching time, as a fraction of the duration, within which the solver's nodes are ignored."""
+NEAR_ANSWER = 1e-3
+"""Largest distance between the proved extremal and the numerical solution, relative to the magnitudes.
+
+It is measured in initial costates and duration; a larger distance makes the proof fail.
+"""
+TRIES = 12
+"""Largest number of Newton corrections of the midpoint."""
+
+SETTLED_CORRECTION = 1e-8
+"""Relative size of a correction below which only one further correction, with all digits, follows."""
 
 
 class Path:
@@ -46,6 +62,49 @@ class Path:
 
     def __call__(self, t: float) -> list[Ball]:
         return [arb(float(np.interp(t, self.times, row))) for row in self.values]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Nodes near an extremal, with lengths of arcs, multiples and multipliers."""
+
+    nodes: list[list[Ball]]
+    lengths: list[Ball]
+
+
+def begun(statement: Statement, found: Solution, digits: int) -> tuple[Shooting, Place]:
+    """Return the equations of the arcs that were found, and a point at which they nearly hold."""
+    path = Path(found, not statement.spec.autonomous)
+    jumps: list[float] = []
+    if walled(statement):
+        laws, junctions, times, jumps = walls.structured(statement, found)
+    elif statement.spec.path_constraints:
+        laws, junctions, times = walls.structured_mixed(statement, found)
+    else:
+        laws, times = arcs(statement, found, path)
+        junctions = [Junction.between(a, b) for a, b in pairwise(laws)]
+    sizes = sizes_of(statement, found, path)
+    chain, nodes, lengths = placed(laws, times, path, sizes)
+    nu, of_multipliers = multipliers(statement, laws[-1], nodes[-1], arb(times[-1]), sizes)
+    shooting = Shooting(statement, tuple(chain), tuple(junctions), tuple(sizes), of_multipliers)
+    n = laws[0].n
+    nodes[0] = started(statement, nodes[0], n)
+    if laws[0].timed:
+        nodes[0][-1] = statement.t0
+    if not shooting.lengths_unknown:
+        lengths = [statement.tf - statement.t0]
+    place = _settled(shooting, nodes, [*lengths, *map(arb, jumps), *nu], digits)
+    moved = [abs(float((a - b).mid())) / s for a, b, s in zip(place.nodes[0], nodes[0], sizes, strict=False)]
+    moved = moved[: n + statement.own]  # what an answer says nothing of is left out
+    horizon = sum(place.lengths[: len(chain)], arb(0)) / sum(lengths, arb(0)) - 1
+    if max(*moved, abs(float(horizon.mid()))) > NEAR_ANSWER:
+        raise NotProved("the solution is not an extremal: the nearest extremal has different costates")
+    return shooting, place
+
+
+def started(statement: Statement, node: list[Any], n: int) -> list[Any]:
+    """Return a first node with the given initial states."""
+    return [statement.initial[i] if i < n and i not in statement.free else v for i, v in enumerate(node)]
 
 
 def arcs(statement: Statement, found: Solution, path: Path) -> tuple[list[Law], list[float]]:
@@ -213,8 +272,64 @@ def sizes_of(statement: Statement, found: Solution, path: Path) -> list[float]:
     n = (len(path.values)) // 2
     largest = [float(v) for v in np.abs(path.values).max(axis=1)]
     groups = (largest[:n], largest[n : 2 * n], largest[2 * n :])
-    rates = statement.case.model.running_cost_batch(
+    costs = statement.case.model.running_cost_batch(
         found.times, found.x[: statement.own], found.u, found.instance.parameters
     )
-    cost = float(np.trapezoid(np.abs(np.broadcast_to(rates, found.times.shape)), found.times))
+    cost = float(np.trapezoid(np.abs(np.broadcast_to(costs, found.times.shape)), found.times))
     return [*(max(v, 1e-9 * max(group)) or 1.0 for group in groups for v in group), cost or 1.0]
+
+
+def _settled(shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], digits: int) -> Place:
+    """Return the midpoint of a proof: a zero of the equations of shooting, to more digits than requested.
+
+    Newton's method finds it without enclosures.
+
+    Raises
+    ------
+    NotProved
+        If Newton's method does not settle.
+    """
+    size, fine = float("inf"), False
+    for _ in range(TRIES):
+        terms, rest = (int(1.2 * digits) + 12, 10.0 ** -(digits + 12)) if fine else (TERMS, REMAINDER)
+        residuals, jacobian = _equations(shooting, nodes, lengths, terms, rest)
+        move = [v.mid() for v in (inverse(jacobian) * residuals).entries()]
+        scales = [*shooting.scales, *shooting.scales_of_lengths(lengths)]
+        before, size = size, max(abs(float(v)) / s for v, s in zip(move, scales, strict=True))
+        here = shooting.unknowns(nodes, lengths)
+        nodes, lengths = shooting.placed([(a - b).mid() for a, b in zip(here, move, strict=True)], nodes, lengths)
+        if fine and size < SETTLED_CORRECTION:
+            return Place(nodes, lengths)
+        if not size < 1e6 or (before < SETTLED_CORRECTION and not fine and size > 0.5 * before):
+            break
+        fine = fine or size < SETTLED_CORRECTION
+    raise NotProved("Newton's method finds no extremal near the solution; the extremal might have another structure")
+
+
+def _equations(
+    shooting: Shooting, nodes: list[list[Ball]], lengths: list[Ball], terms: int, rest: float
+) -> tuple[Any, Any]:
+    m = shooting.arcs[0].law.m
+    zero = [[arb(0)] * m for _ in nodes]
+    box = Box([[v.mid() for v in node] for node in nodes], zero, lengths, [arb(0)] * len(lengths))
+    rows, k = Rows(shooting, box), 0
+    for j, arc in enumerate(shooting.arcs):
+        for a, b in zip(arc.fractions[:-1], arc.fractions[1:], strict=True):
+            span = (box.lengths[j] * (arb(b) - arb(a))).mid()
+            one = _led(arc.law, box.nodes[k], span, shooting.sizes, terms, rest)
+            rows.matched(one, k, j, arb(b) - arb(a), b == 1.0)
+            k += 1
+        if j + 1 < len(shooting.arcs):
+            rows.met(j, k)
+    rows.ended(k)
+    return column(rows.residuals).mid(), rows.jacobian().mid()
+
+
+def _led(law: Law, node: list[Ball], span: Ball, sizes: tuple[float, ...], terms: int, rest: float) -> Segment:
+    z, flow, left = node, unit(law.m), span
+    while True:
+        z, v, h, last = leap(law, z, left, sizes, terms, rest)
+        flow = (v * flow).mid()
+        if last:
+            return Segment(z, flow, [r.mid() for r in rates(law, z)], [], [], [])
+        left = (left - h).mid()

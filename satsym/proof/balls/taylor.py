@@ -106,6 +106,22 @@ def column(values: Sequence[Ball]) -> Matrix:
     return arb_mat(len(values), 1, list(values))
 
 
+def inverse(jacobian: Matrix) -> Matrix:
+    """Return an approximate inverse of a ball matrix, with exact entries.
+
+    Raises
+    ------
+    NotProved
+        If there is none.
+    """
+    if jacobian.nrows() != jacobian.ncols():
+        raise NotProved("the numbers of equations and unknowns differ; two bounds are reached at the same time")
+    try:
+        return jacobian.mid().inv().mid()
+    except ZeroDivisionError:
+        raise NotProved("the equations of the extremal are singular; it may belong to a family of extremals") from None
+
+
 def polynomial(coefficients: Sequence[Any], at: Ball) -> Any:
     """Evaluate a polynomial in balls or in matrices, constant term first."""
     total = coefficients[-1]
