@@ -31,6 +31,10 @@ class Checked(Choice):
     FULL = "full"
 
 
+FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
+"""Control laws that a simulation can follow."""
+
+
 class TableFormat(Choice):
     """The file format of a study's table."""
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,9 @@ from satsym.cli.output import VOICE, Voice
 from satsym.report import said, texts
 from satsym.report.look import FORMATS, SCREEN, SIZES, Look
 from satsym.status import BadInput
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
 
 
 class Place(click.Path):
@@ -124,6 +127,20 @@ set_option = click.option(
     metavar="KEY=VALUE",
     help="Change a value of the instance, such as initial.r=1.05; for the keys, see `satsym study`.",
 )
+
+
+def with_values(case: Instance, values: Sequence[str]) -> tuple[Instance, dict[str, float]]:
+    """Return an instance with the values of ``--set``, and these by key.
+
+    The module of studies, which reads them, is loaded only if there are any.
+    """
+    if not values:
+        return case, {}
+    from satsym.instance.numbers import changed
+    from satsym.studies.reading import settings
+
+    given = settings(case, values)
+    return changed(case, given), given
 
 
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:

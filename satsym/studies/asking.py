@@ -11,7 +11,7 @@ import msgspec
 
 from satsym import instance as instances
 from satsym import methods
-from satsym.choices import Checked, Command
+from satsym.choices import FEEDBACKS, Checked, Command
 from satsym.instance import Instance, Written
 from satsym.instance.numbers import changed
 from satsym.instance.schema import StudyTable
@@ -136,8 +136,6 @@ def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
             raise BadInput(f"{case.called}: {refusal}")
         return
     case.require_numbers()
-    from satsym.analysis.regulator.feedback import FEEDBACKS
-
     if feedback is not None and feedback not in FEEDBACKS:
         raise BadInput(f"feedback: {shown(feedback)}: {suggestion(feedback, FEEDBACKS)}")
     if (command is Command.LQR or feedback == "lqr") and case.lqr is None:

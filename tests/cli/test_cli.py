@@ -168,13 +168,6 @@ def test_tolerance_is_a_positive_number(run: Run, value: str) -> None:
     assert run("solve", "its-thesis", f"--tolerance={value}")[:2] == (2, "")
 
 
-def test_feedbacks_are_those_that_the_analysis_knows() -> None:
-    from satsym.analysis.regulator import feedback
-    from satsym.cli.commands.simulate import FEEDBACKS
-
-    assert feedback.FEEDBACKS == FEEDBACKS
-
-
 # Lists
 
 

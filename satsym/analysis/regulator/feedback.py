@@ -16,6 +16,7 @@ from satsym.analysis.linear.equilibrium import Linearisation, linearise
 from satsym.analysis.linear.system import LinearSystem, scaled
 from satsym.analysis.regulator.lqr import Regulator, regulator, required
 from satsym.arrays import Array
+from satsym.choices import FEEDBACKS
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.kernels import Kernels
@@ -24,9 +25,6 @@ from satsym.solvers import simulate as simulated
 from satsym.solvers.simulation import closed_loop
 from satsym.solvers.simulation.closed_loop import Law
 from satsym.status import BadInput, Status
-
-FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
-"""Control laws that a simulation can follow."""
 
 GAINS_PER_TIME = 50.0
 """Number of gains of a finite horizon for each time constant of the closed loop's fastest motion."""

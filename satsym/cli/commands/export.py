@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import place_option, set_option, subject_argument
+from satsym.cli.options import place_option, set_option, subject_argument, with_values
 from satsym.cli.output import complain, emit, live, tell
 from satsym.report.said import message
 from satsym.status import ExitCode
@@ -44,16 +44,13 @@ def export(subject: str, kind: str, out: Path | None, source: Path | None, value
     simulated. Formats are oem (CCSDS Orbit Ephemeris Message), czml (Cesium), stk (STK ephemeris) and csv.
     """
     from satsym import instance
-    from satsym.instance.numbers import changed
     from satsym.report.exchange import exported
     from satsym.report.exchange.ephemeris import placed
     from satsym.report.results import trajectory
     from satsym.report.results.files import write_text
     from satsym.report.terminal.solution import with_files
-    from satsym.studies.reading import settings
 
-    case = instance.load(subject)
-    case = changed(case, settings(case, values))
+    case, _ = with_values(instance.load(subject), values)
     placed(case)  # now, rather than after a long run
     found = trajectory.read(case, source)[0] if source else _found(case)
     if not found.status.answered:

@@ -9,7 +9,7 @@ import click
 
 from satsym.cli import names
 from satsym.cli.help import command
-from satsym.cli.options import json_option, out_option, plot_options, set_option
+from satsym.cli.options import json_option, out_option, plot_options, set_option, with_values
 from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
 from satsym.status import BadInput, ExitCode, Status
@@ -41,13 +41,11 @@ def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, 
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find
-    from satsym.instance.numbers import changed
     from satsym.kernels import Kernels
     from satsym.report.results.linear import regulator_object
     from satsym.report.results.objects import head_about, with_settings
     from satsym.report.terminal.linear import regulator_text
     from satsym.report.terminal.solution import with_files
-    from satsym.studies.reading import settings
 
     given, numbers = find(subject), dict[str, float]()
     if values:
@@ -55,8 +53,7 @@ def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, 
             raise BadInput(
                 f"--set {printable(values[0])}: applies to instances only, but {printable(subject)} is a model"
             )
-        numbers = settings(given, values)
-        given = changed(given, numbers)
+        given, numbers = with_values(given, values)
     folder = folder_for(Path(subject).stem, "lqr", out, look)
     design = designed(given)
     result = with_settings(head_about("lqr", given, Status.CONVERGED) | regulator_object(design), numbers)

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import json_option, out_option, place_option, set_option, subject_argument
+from satsym.cli.options import json_option, out_option, place_option, set_option, subject_argument, with_values
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save
 from satsym.report.said import language
@@ -44,19 +44,13 @@ def prove(
     that no nearby motion costs less.
     """
     from satsym import instance, solvers
-    from satsym.instance.numbers import changed
     from satsym.proof.proving import prove as prove_found
     from satsym.proof.record import Outcome
     from satsym.report.results.objects import head, with_settings
     from satsym.report.terminal.proof import proof_text
     from satsym.report.terminal.solution import progress_line, with_files
 
-    case, given = instance.load(subject), dict[str, float]()
-    if values:
-        from satsym.studies.reading import settings
-
-        given = settings(case, values)
-        case = changed(case, given)
+    case, given = with_values(instance.load(subject), values)
     folder = folder_for(case.name, "prove", out, None)
     with live() as line:
         proof = prove_found(

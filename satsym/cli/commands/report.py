@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.help import command
-from satsym.cli.options import place_option, set_option, subject_argument
+from satsym.cli.options import place_option, set_option, subject_argument, with_values
 from satsym.cli.output import live, tell
 from satsym.report.said import language, message, say
 from satsym.status import BadInput, ExitCode, Verdict
@@ -58,13 +58,11 @@ def report(
     DIR must have been made with --trajectories.
     """
     from satsym import instance, solvers
-    from satsym.instance.numbers import changed
     from satsym.report.extra import library
     from satsym.report.page.explore import explored
     from satsym.report.page.run import Given, render
     from satsym.report.results.files import write_text
     from satsym.report.terminal.solution import progress_line, with_files
-    from satsym.studies.reading import settings
 
     if page is None:
         raise click.UsageError("Give --html FILE, the file to write the page to.")
@@ -72,8 +70,7 @@ def report(
         raise click.UsageError("--study DIR requires --interactive.")
     if interactive:
         library("plotly.offline", "plotly", "interactive")  # now, before solving
-    case = instance.load(subject)
-    case = changed(case, settings(case, values))
+    case, _ = with_values(instance.load(subject), values)
     with live() as line:
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))

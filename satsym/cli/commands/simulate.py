@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.choices import FEEDBACKS
 from satsym.cli.help import command
-from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option, with_values
 from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
     from satsym.report.look import Look
-
-FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
-"""The control laws of simulations, repeated here because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
 Examples:
@@ -53,14 +51,10 @@ def simulate(
     """
     from satsym import instance
     from satsym.analysis.regulator.feedback import simulate as simulated
-    from satsym.instance.numbers import changed
     from satsym.report.results.objects import simulation_object, with_settings
     from satsym.report.terminal.solution import simulation_text, with_files
-    from satsym.studies.reading import settings
 
-    case = instance.load(subject)
-    given = settings(case, values)
-    case = changed(case, given)
+    case, given = with_values(instance.load(subject), values)
     folder = folder_for(case.name, "simulate", out, look)
     simulation = simulated(case, feedback)
     result = with_settings(simulation_object(simulation), given)

@@ -12,7 +12,7 @@ import click
 
 from satsym import methods
 from satsym.cli.help import command
-from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option, with_values
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode, Verdict
@@ -85,15 +85,13 @@ def solve(
     [solver] in the instance.
     """
     from satsym import instance, solvers
-    from satsym.instance.numbers import changed
     from satsym.report.results.objects import solution_object, with_settings
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
 
     written = instance.read(subject)
     written = replace(written, tree=_continued(written.tree, varied))
-    case = written.instance()
-    given = _set(case, values)
-    case = _changed(changed(case, given), method=method, steps=steps, tolerance=tolerance)
+    case, given = with_values(written.instance(), values)
+    case = _changed(case, method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, look)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
@@ -131,15 +129,6 @@ def _number(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
-
-
-def _set(case: Instance, values: Sequence[str]) -> dict[str, float]:
-    """Return the values of ``--set`` by key; the module of studies, which reads them, is loaded only for that."""
-    if not values:
-        return {}
-    from satsym.studies.reading import settings
-
-    return settings(case, values)
 
 
 def _changed(case: Instance, **options: Any) -> Instance:
