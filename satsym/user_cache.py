@@ -21,7 +21,7 @@ def folder(purpose: str) -> Path:
 
 
 def read(path: Path) -> bytes:
-    """Return the content cached at a path; ``None`` where there is none, or it cannot be read."""
+    """Return the content cached at a path; empty where there is none, or it cannot be read."""
     try:
         return path.read_bytes()
     except OSError:

@@ -149,7 +149,7 @@ def _result(future: Future[list[Row]]) -> list[Row] | int:
 
 
 def _joined(apart: dict[int, dict[int, Row]], chunk: Chunk, row: Row, count: int) -> list[Row]:
-    """Return the rows of a chunk that is computed row by row, once all are there; ``None`` before."""
+    """Return the rows of a chunk that is computed row by row, once all are there; empty before."""
     found = apart.setdefault(chunk.number, {})
     found[chunk.start] = row
     return [row for _, row in sorted(apart.pop(chunk.number).items())] if len(found) == count else []

@@ -135,7 +135,7 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
 
 
 def _exact(model: Kernels) -> str:
-    """Return the exact reference motion of a model as a function of time."""
+    """Return the name of the generated function with the exact rates of a model."""
     return EXACT if EXACT in model.spec.linear else "dynamics"
 
 

@@ -179,7 +179,7 @@ class _Tried:
         return self._plausible(members) and self._tried(members)[0].single(change)
 
     def _largest_part(self, members: tuple[int, ...], change: float) -> tuple[int, ...]:
-        """Return the largest set of eigenvalues that may be a single one, where all nearly are; else ``None``.
+        """Return the largest set of eigenvalues that may be a single one, where all nearly are; else nothing.
 
         Where a multiple eigenvalue is spread as far as the distance to the next one, nearest neighbours need not belong
         together.
