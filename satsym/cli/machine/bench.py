@@ -67,7 +67,8 @@ def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
         for one in measured_steps(given, QUICK_SECONDS if quick else THOROUGH_SECONDS):
             steps.append(one)
             line.show(say("measuring <what> ...", what=BACKENDS["numba"]))
-        status, solution = Status.CONVERGED, None
+        status = Status.CONVERGED
+        solution: dict[str, Any] | None = None
         if not isinstance(given, Kernels) and model.spec.has_cost:
             line.show(say("measuring <what> ...", what=say("one solution")))
             status, solution = measured_solution(given)
@@ -165,7 +166,8 @@ def measured_solution(instance: Instance) -> tuple[Status, dict[str, Any]]:
     solvers.solve(instance, examined=False)  # so that what is loaded is there
     began = time.perf_counter()
     found = solvers.solve(instance, examined=False)
-    took, certificate = time.perf_counter() - began, None
+    took = time.perf_counter() - began
+    certificate: float | None = None
     if found.status.answered:
         began = time.perf_counter()
         certify(replace(found, wall_s=took))
