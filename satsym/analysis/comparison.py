@@ -220,8 +220,7 @@ def _nodes(instance: Instance) -> Array:
 
 def undriven(instance: Instance, progress: Progress = lambda share: None) -> Array:
     """Return the states at the nodes without control, shape (n, N+1), the same for every driving control."""
-    start = np.array(instance.initial)
-    return _followed(instance.model, instance.parameters, _nodes(instance), start, [], 0, progress)
+    return _followed(instance.model, instance.parameters, _nodes(instance), np.array(instance.initial), [], 0, progress)
 
 
 def reached(instance: Instance, driver: Case, still: Array, progress: Progress = lambda share: None) -> Case:
@@ -304,7 +303,8 @@ def _signals(driver: Case, name: str) -> tuple[list[Torque], float]:
     for span in spans_of(driver.times, driver.x, driver.u, driver.switching_times):
         times = np.linspace(span.times[0], span.times[-1], DRIVER_SAMPLES)
         values = value(times, span.x(times), span.u(times))
-        found.append((float(times[0]), float(times[-1]), lambda t, xp=times, fp=values: np.interp(t, xp, fp)))
+        joined = lambda t, xp=times, fp=values: np.asarray(np.interp(t, xp, fp))  # noqa: E731
+        found.append((float(times[0]), float(times[-1]), joined))
     at, x = np.array([driver.instance.t0]), np.array(driver.instance.initial)[:, None]
     one = np.zeros((len(driver.u), 1))
     slope = value(at, x, one + 1.0) - value(at, x, one)
