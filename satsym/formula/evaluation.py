@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Generic
 
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant, lines
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Sources, Value, plain, size_of, square, without
 from satsym.status import BadInput
 
@@ -104,10 +104,7 @@ class Engine(ABC, Generic[S]):
 
     def scalar(self, tree: Node) -> S:
         """Evaluate a formula that is no matrix; for an equation, its right-hand side."""
-        found = self.operand(tree)
-        if isinstance(found, Matrix | Roots | Kernel):
-            raise BadInput("a matrix is given where an expression is needed")
-        return found
+        return plain(self.operand(tree))
 
     def matrix(self, tree: Node) -> Matrix[S]:
         """Evaluate a formula that is a matrix."""
@@ -119,25 +116,20 @@ class Engine(ABC, Generic[S]):
     def characteristic(self, matrix: Matrix[S], variable: S) -> S:
         """Return det(x I - A)."""
         n = square(matrix)
-        minus = self.number(Fraction(-1))
-        rows = tuple(
-            tuple(
-                self.add([*([variable] if i == j else []), self.multiply([minus, matrix.rows[i][j]])]) for j in range(n)
-            )
-            for i in range(n)
+        minus = self._scaled(self.number(Fraction(-1)), matrix)
+        return self.determinant(
+            Matrix.of(n, n, lambda i, j: self.add([*([variable] if i == j else []), minus.rows[i][j]]))
         )
-        return self.determinant(Matrix(rows))
 
     def product(self, one: Matrix[S], other: Matrix[S]) -> Matrix[S]:
         """Return the product of two matrices."""
         if one.shape[1] != other.shape[0]:
             raise BadInput(f"a {size_of(one)} matrix cannot be multiplied by a {size_of(other)} matrix")
         columns = list(zip(*other.rows, strict=True))
-        return Matrix(
-            tuple(
-                tuple(self.add([self.multiply(pair) for pair in zip(row, column, strict=True)]) for column in columns)
-                for row in one.rows
-            )
+        return Matrix.of(
+            one.shape[0],
+            other.shape[1],
+            lambda i, j: self.add([self.multiply(pair) for pair in zip(one.rows[i], columns[j], strict=True)]),
         )
 
     def operand(self, tree: Node) -> Value:
@@ -146,7 +138,7 @@ class Engine(ABC, Generic[S]):
         return found.rhs if isinstance(found, Relation) else found
 
     def _grid(self, tree: Grid) -> Matrix[S]:
-        rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in tree.entries]
+        rows = lines(tree)
         if not rows or len({len(row) for row in rows}) > 1 or not rows[0]:
             raise BadInput("all rows of a matrix must have the same length")
         return Matrix(tuple(tuple(self.scalar(entry) for entry in row) for row in rows))
@@ -157,10 +149,7 @@ class Engine(ABC, Generic[S]):
             return self.add([plain(term) for term in terms])
         if len(matrices) < len(terms) or len({m.shape for m in matrices}) > 1:
             raise BadInput("matrices of different sizes cannot be added")
-        m, n = matrices[0].shape
-        return Matrix(
-            tuple(tuple(self.add([term.rows[i][j] for term in matrices]) for j in range(n)) for i in range(m))
-        )
+        return Matrix.of(*matrices[0].shape, lambda i, j: self.add([term.rows[i][j] for term in matrices]))
 
     def _product(self, factors: Sequence[Value]) -> Value:
         result: Value | None = None
@@ -194,7 +183,7 @@ class Engine(ABC, Generic[S]):
     def identity(self, n: int) -> Matrix[S]:
         """Return the identity matrix."""
         one, zero = self.number(Fraction(1)), self.number(Fraction(0))
-        return Matrix(tuple(tuple(one if i == j else zero for j in range(n)) for i in range(n)))
+        return Matrix.of(n, n, lambda i, j: one if i == j else zero)
 
     def _call(self, tree: Call) -> Value:
         operation = self.operations.get(tree.function)
@@ -236,15 +225,8 @@ class Engine(ABC, Generic[S]):
         """Return the inverse of a matrix, by cofactors."""
         n = square(matrix)
         over = self.power(self.determinant(matrix), Fraction(-1))
-        return Matrix(
-            tuple(
-                tuple(
-                    self.multiply([self.number(Fraction((-1) ** (i + j))), over, self._cofactor(matrix, j, i)])
-                    for j in range(n)
-                )
-                for i in range(n)
-            )
-        )
+        sign = [self.number(Fraction(1)), self.number(Fraction(-1))]
+        return Matrix.of(n, n, lambda i, j: self.multiply([sign[(i + j) % 2], over, self._cofactor(matrix, j, i)]))
 
     def _cofactor(self, matrix: Matrix[S], i: int, j: int) -> S:
         if matrix.shape == (1, 1):

@@ -14,14 +14,16 @@ if it is not, another point is drawn.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from fractions import Fraction
 from functools import lru_cache
+from typing import TypeVar
 
 from satsym.formula.angles import HALF_TURNS, PARTS, Terms, TooManyTerms, terms_of
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.formula.writing import written
 
+P = TypeVar("P", bound="Point")
 PRIME = 2305843009139462809
 """A prime below 2^61; PRIME - 1 = 2^3 * 3 * 17 * 5651576002792801."""
 POINTS = 12
@@ -231,13 +233,7 @@ def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int 
     Undecided
         If it has no value anywhere.
     """
-    return all(value == 0 for value in values(tree, seed, positive, points))
-
-
-def values(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> Iterable[int]:
-    """Return values at random points of the formula's domain; see :func:`vanishes`."""
-    for point in points_for((tree,), seed, positive, points):
-        yield point.value(tree)
+    return all(point.value(tree) == 0 for point in points_for((tree,), seed, positive, points))
 
 
 def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (), count: int = POINTS) -> list[Point]:
@@ -249,21 +245,45 @@ def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (),
         If there are not enough.
     """
     wanted = list(trees)
+    found = drawn(
+        lambda draw, strict: Point(f"{seed} {draw}", positive, strict), lambda point: [*map(point.value, wanted)], count
+    )
+    try:
+        return list(found)[-count:]
+    except Undecided:
+        raise Undecided(f"no point at which {written(wanted[0])[:60]} has a value") from None
+
+
+def drawn(point: Callable[[int, bool], P], tried: Callable[[P], object], count: int, draws: int = DRAWS) -> Iterator[P]:
+    """Yield points at which something has a value, until there are so many of one kind.
+
+    Parameters
+    ----------
+    point
+        The point of a draw; first those at which only positive numbers have roots, then others.
+    tried
+        What has to have a value.
+
+    Raises
+    ------
+    Undecided
+        If there are not enough.
+    """
     for strict in (True, False):
-        found: list[Point] = []
-        for draw in range(DRAWS):
-            point = Point(f"{seed} {draw}", positive, strict)
+        found = 0
+        for draw in range(draws):
+            one = point(draw, strict)
             try:
-                for tree in wanted:
-                    point.value(tree)
+                tried(one)
             except Nowhere:
                 break
             except NoValue:
                 continue
-            found.append(point)
-            if len(found) == count:
-                return found
-    raise Undecided(f"no point at which {written(wanted[0])[:60]} has a value")
+            yield one
+            found += 1
+            if found == count:
+                return
+    raise Undecided("no point was found at which the printed expression has a value")
 
 
 @lru_cache(maxsize=65536)

@@ -99,6 +99,11 @@ def grid(rows: Iterable[Iterable[Node]]) -> Grid:
     return Grid(tuple(Grid(tuple(row)) for row in rows))
 
 
+def lines(node: Grid) -> list[tuple[Node, ...]]:
+    """Return the rows of a matrix; an entry that is no list is a row of its own."""
+    return [entry.entries if isinstance(entry, Grid) else (entry,) for entry in node.entries]
+
+
 ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 
 

@@ -17,6 +17,11 @@ class Matrix(Generic[S]):
 
     rows: tuple[tuple[S, ...], ...]
 
+    @classmethod
+    def of(cls, rows: int, columns: int, entry: Callable[[int, int], S]) -> Matrix[S]:
+        """Return the matrix whose entries a function gives for row and column, counted from zero."""
+        return cls(tuple(tuple(entry(i, j) for j in range(columns)) for i in range(rows)))
+
     @property
     def shape(self) -> tuple[int, int]:
         """Return the numbers of rows and columns."""
@@ -85,9 +90,7 @@ def stacked(matrices: Sequence[Matrix[S]], beside: bool) -> Matrix[S]:
     if len({matrix.shape[0 if beside else 1] for matrix in matrices}) > 1:
         raise BadInput("the matrices that form a block matrix differ in size")
     if beside:
-        return Matrix(
-            tuple(tuple(e for row in rows for e in row) for rows in zip(*(m.rows for m in matrices), strict=True))
-        )
+        return transposed(stacked(list(map(transposed, matrices)), beside=False))
     return Matrix(tuple(row for matrix in matrices for row in matrix.rows))
 
 

@@ -28,6 +28,8 @@ from satsym.formula.tree import (
     calls_in,
     cells,
     each,
+    grid,
+    lines,
     mapped,
     substituted,
     symbols,
@@ -172,7 +174,7 @@ def matrix_answer(
         [substituted(entries[i][j], names) if (i, j) in wrong else cell for j, cell in enumerate(row)]
         for i, row in enumerate(rows)
     ]
-    right = Grid(tuple(Grid(tuple(row)) for row in theirs))
+    right = grid(theirs)
     write = subject.writer(subject.latex)
     said = "; ".join(f"entry ({i + 1}, {j + 1}): {write(rows[i][j])} should be {write(theirs[i][j])}" for i, j in wrong)
     correct = Equality(statement.lhs, right) if isinstance(statement, Equality) and statement.rhs == side else right
@@ -195,7 +197,7 @@ def _rows(side: Node) -> Rows | None:
         return tuple(zip(*inner, strict=True)) if inner else None
     if not isinstance(side, Grid):
         return None
-    rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in side.entries]
+    rows = lines(side)
     return tuple(rows) if len({len(row) for row in rows}) == 1 else None
 
 

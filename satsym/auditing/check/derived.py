@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
-from satsym.auditing.latex.words import NOT_COMPARED, NOT_NUMBERS
+from satsym.auditing.latex.words import NOT_NUMBERS
 from satsym.formula.calculus import derivative, difference, product, total
-from satsym.formula.field import BY_TERMS, NoValue, Nowhere, Point, Undecided, points_for
+from satsym.formula.field import BY_TERMS, Point, Undecided, drawn, points_for
 from satsym.formula.reading import FUNCTIONS
 from satsym.formula.tree import ZERO, Call, Div, Equality, Neg, Node, Sym, calls_in, mapped, substituted, symbols
 from satsym.records import record
@@ -20,7 +20,6 @@ _GIVEN = ("reference", "reference_condition", "boundary_conditions", "boundary_r
 """Steps of a derivation whose equations hold at some times only, not along the whole motion."""
 _FIRST = ("first_order", "equations_of_motion", "newton", "hamiltonian", "stationarity", "control_law")
 """Steps whose equations are preferred when several steps contain the same equation."""
-_NOT_PLAIN = {*NOT_COMPARED, "transpose", "det", "norm", "sat", "diff", "d"}
 _COST = ("L", "S")
 _DEEPEST = 12
 
@@ -250,20 +249,16 @@ def vanishes(tree: Node, derived: Derived, besides: Mapping[str, Node] = Mapping
 
     `besides` contains additional definitions, e.g. of equations that hold at some times only.
     """
-    for strict in (True, False):
-        found = 0
-        for draw in range(40):
-            try:
-                if MotionPoint(f"check {draw}", derived, besides, strict).value(tree):
-                    return False
-            except Nowhere:
-                break
-            except NoValue:
-                continue
-            found += 1
-            if found == points:
-                return True
-    return False
+    found = drawn(
+        lambda draw, strict: MotionPoint(f"check {draw}", derived, besides, strict),
+        lambda point: point.value(tree),
+        points,
+        draws=40,
+    )
+    try:
+        return not any(point.value(tree) for point in found)
+    except Undecided:
+        return False
 
 
 def says_nothing(tree: Node, derived: Derived) -> bool:
@@ -299,5 +294,5 @@ def solved(target: Target, derived: Derived) -> Iterator[Mapping[str, Node]]:
 def is_plain(tree: Node) -> bool:
     """Return whether a tree contains only arithmetic operations and elementary functions."""
     return symbols(tree).isdisjoint(NOT_NUMBERS) and all(
-        call.function in FUNCTIONS and call.function not in _NOT_PLAIN for call in calls_in(tree)
+        call.function in FUNCTIONS and call.function != "norm" for call in calls_in(tree)
     )

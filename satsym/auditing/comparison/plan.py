@@ -113,20 +113,13 @@ class Plan(ABC):
 
     def points_for(self, cells: Cells, count: int = QUICK) -> list[BoundPoint]:
         """Return random points at which both the cells and the targets have values."""
-        found = []
-        for strict in (True, False):
-            for draw in range(field.DRAWS):
-                point = BoundPoint(field.Point(f"edits {draw}", self.bench.names.positive, strict), self.meanings)
-                try:
-                    next(self.residuals(point, cells), None)
-                except field.Nowhere:
-                    break
-                except field.NoValue:
-                    continue
-                found.append(point)
-                if len(found) == count:
-                    return found
-        raise field.Undecided("no point was found at which the printed expression has a value")
+        positive = self.bench.names.positive
+        found = field.drawn(
+            lambda draw, strict: BoundPoint(Point(f"edits {draw}", positive, strict), self.meanings),
+            lambda point: next(self.residuals(point, cells), None),
+            count,
+        )
+        return list(found)[-count:]
 
     def may_hold(self, cells: Cells) -> bool:
         """Return whether cells are right at a few random points; fast enough for the search of edits."""

@@ -12,7 +12,7 @@ from satsym.auditing.diagnosis.smallest_edit import remedy, wrong_formula
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.sentences import Said, joined, say
-from satsym.formula.tree import Equality, Formula, Grid, Node, cells, shaped
+from satsym.formula.tree import Equality, Formula, Node, cells, grid, shaped
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import library
 
@@ -56,7 +56,7 @@ def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
 
 def in_rows(lines: Iterable[tuple[Node, ...]]) -> str:
     """Return the rows of a matrix as text."""
-    return written(Grid(tuple(map(Grid, lines))))
+    return written(grid(lines))
 
 
 def corrected(outcome: Outcome) -> Formula:
