@@ -84,7 +84,7 @@ def written() -> frozenset[str]:
 
 REFUSALS = {
     *("BadInput", "DerivationError", "Disagreement", "MissingText", "NotAFormula", "Refused", "Stopped"),
-    *("TooManyTerms", "Unexpected", "WrongKey", "WrongScope", "again", "unusable", "_bad", "_refusal"),
+    *("TooManyTerms", "Unexpected", "WrongKey", "again", "unusable", "_bad", "_refusal"),
 }
 """What carries a text to people; the other errors are for callers in Python, or become one of these."""
 

@@ -18,7 +18,7 @@ from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
-from satsym.auditing.ledger.scopes import Scope, WrongScope
+from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
 from satsym.formula.tree import Node, calls_in, substituted
@@ -158,10 +158,7 @@ class _Reader:
             with self._telling("scope", name):
                 if not isinstance(entry, dict):
                     raise BadInput(f"got {shown(entry)}; write a table [scope.{printable(name)}]")
-        try:
-            return notation.scopes(tables, self._derived)
-        except WrongScope as error:
-            raise self._bad(str(error), f"scope.{error.scope}", error.key) from None
+        return notation.scopes(tables, self._derived, self._telling)
 
     def _check_scopes(self) -> None:
         for scope in self._scopes.values():

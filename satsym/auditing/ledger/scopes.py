@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from satsym.formula import reading
 from satsym.formula.tree import Node, Sym, calls_in, substituted
@@ -47,65 +49,59 @@ class Scope:
         return _stem(one) == _stem(other)
 
 
-class WrongScope(BadInput):
-    """A scope cannot be read; ``scope`` and ``key`` are the names of the table and of the key."""
-
-    def __init__(self, scope: str, key: str, message: str) -> None:
-        super().__init__(f"[scope.{scope}] {key}: {message}" if key else f"[scope.{scope}]: {message}")
-        self.scope, self.key = scope, key
+Telling: TypeAlias = Callable[[str, str], AbstractContextManager[None]]
+"""Context that adds table and key to the message of an error."""
 
 
-def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node]) -> dict[str, Scope]:
+def scopes(
+    tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node], telling: Telling
+) -> dict[str, Scope]:
     """Return all scopes of a ledger, each including the scope that it extends."""
     found: dict[str, Scope] = {}
 
     def resolve(name: str, asking: tuple[str, ...]) -> Scope:
-        if name in asking:
-            raise WrongScope(
-                asking[-1], "extends", f"the definition refers back to itself: {' -> '.join((*asking, name))}"
-            )
         if name not in found:
             base = tables[name].get("extends")
             below = None
             if base is not None:
-                if not isinstance(base, str) or base not in tables:
-                    raise WrongScope(
-                        name, "extends", f"there is no scope {shown(base)}; {suggestion(str(base), tables)}"
-                    )
+                with telling(f"scope.{name}", "extends"):
+                    if not isinstance(base, str) or base not in tables:
+                        raise BadInput(f"there is no scope {shown(base)}; {suggestion(str(base), tables)}")
+                    if base in (*asking, name):
+                        circle = " -> ".join((*asking, name, base))
+                        raise BadInput(f"the definition refers back to itself: {circle}")
                 below = resolve(base, (*asking, name))
-            found[name] = _scope(name, tables[name], below, derived)
+            found[name] = _scope(name, tables[name], below, derived, telling)
         return found[name]
 
     return {name: resolve(name, ()) for name in tables}
 
 
-def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived: Mapping[str, Node]) -> Scope:
+def _scope(
+    name: str, table: Mapping[str, object], below: Scope | None, derived: Mapping[str, Node], telling: Telling
+) -> Scope:
     meanings = dict(below.meanings) if below else {}
     orders = dict(below.orders) if below else {}
     for key, value in table.items():
-        if key == "extends":
-            continue
-        if key in LISTS:
-            if not isinstance(value, list) or not all(isinstance(entry, str) for entry in value):
-                raise WrongScope(name, key, f'got {shown(value)}; write a list of names, such as ["x1", "x2"]')
-            orders[key] = tuple(value)
-            continue
-        if not isinstance(value, str):
-            raise WrongScope(
-                name, key, f"got {shown(value)}; write the corresponding expression of the model in quotes"
-            )
-        try:
+        with telling(f"scope.{name}", key):
+            if key == "extends":
+                continue
+            if key in LISTS:
+                if not isinstance(value, list) or not all(isinstance(entry, str) for entry in value):
+                    raise BadInput(f'got {shown(value)}; write a list of names, such as ["x1", "x2"]')
+                orders[key] = tuple(value)
+                continue
+            if not isinstance(value, str):
+                raise BadInput(f"got {shown(value)}; write the corresponding expression of the model in quotes")
             reading.checked_name(key)
             meanings[key] = Scales().checked(substituted(reading.expression(value, judging=True), derived))
-        except BadInput as error:
-            raise WrongScope(name, key, str(error)) from None
-        if any(call.function == "row" for call in calls_in(meanings[key])):
-            raise WrongScope(name, key, "a notation cannot depend on a row")
+            if any(call.function == "row" for call in calls_in(meanings[key])):
+                raise BadInput("a notation cannot depend on a row")
     for key, entries in orders.items():
         for entry in entries:
             if entry not in meanings:
-                hint = suggestion(entry, meanings)
-                raise WrongScope(name, key, f"{shown(entry)} is not a symbol of this scope; {hint}")
+                with telling(f"scope.{name}", key):
+                    raise BadInput(f"{shown(entry)} is not a symbol of this scope; {suggestion(entry, meanings)}")
     return Scope(name, meanings, orders)
 
 
