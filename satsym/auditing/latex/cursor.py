@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Self
 
 from satsym.auditing.latex.letters import Letter
-from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import ACCENTS, CLOSING, MARKS, OPENING, REFUSED, RELATIONS, STYLES, UPRIGHT
-from satsym.formula.tree import Call, Equality, Node
+from satsym.auditing.latex.tokens import END, Token, Unread, braced, group_end
+from satsym.auditing.latex.words import (
+    CLOSING,
+    DECORATIONS,
+    MARKS,
+    OPENING,
+    REFUSED,
+    RELATIONS,
+    UPRIGHT,
+)
+from satsym.formula.tree import Call, Equality, Node, Pow, Sym
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -103,32 +111,52 @@ class Cursor(ABC):
     def _begins_factor(self, token: Token) -> bool:
         """Return whether a factor can begin with a token."""
 
-    def _peek(self, ahead: int = 0) -> Token | None:
-        place = self._i + ahead
-        return self._found[place] if place < len(self._found) else None
+    def _at(self, place: int) -> Token:
+        """Return the token at a place; at any other place, the end of the formula."""
+        return self._found[place] if 0 <= place < len(self._found) else END
+
+    def _peek(self, ahead: int = 0) -> Token:
+        return self._at(self._i + ahead)
 
     def _is(self, text: str, ahead: int = 0, kind: str = "sign") -> bool:
         token = self._peek(ahead)
-        return token is not None and token.kind == kind and token.text == text
+        return token.kind == kind and token.text == text
+
+    def _is_bar_of_place(self) -> bool:
+        """Return whether a vertical bar with an index comes next."""
+        return self._peek().text in ("|", "vert", "rvert") and self._is("_", 1)
+
+    def _accept(self, sign: str) -> bool:
+        """Read a sign if it comes next, and return whether it does."""
+        accepted = self._is(sign)
+        self._i += accepted
+        return accepted
 
     def _take(self) -> Token:
-        token = self._peek()
-        if token is None:
-            last = self._found[-1] if self._found else None
-            raise Unread("the formula is incomplete", (last.at + len(last.text)) if last else self._start)
+        if self._i >= len(self._found):
+            last = self._at(len(self._found) - 1)
+            raise Unread("the formula is incomplete", self._start if last is END else last.at + len(last.text))
         self._i += 1
-        return token
+        return self._found[self._i - 1]
 
     def _refuse(self) -> None:
         token = self._take()
-        if token.kind == "macro" and token.text in REFUSED:
+        if token.is_macro(REFUSED):
             raise Unread(f"{REFUSED[token.text]} (\\{token.text}) is not supported", token.at)
-        if token.kind == "macro" and token.text == "remark":
+        if token.is_macro("remark"):
             raise Unread("words inside a formula are not supported", token.at)
         if token.text in RELATIONS:
             raise Unread("relations inside brackets or arguments are not supported", token.at)
         sign = "\\" if token.kind == "macro" else ""
         raise Unread(f'"{sign}{printable(token.text)}" is not supported here', token.at)
+
+    def _letter_of(self, node: Node, power: bool = False) -> Letter | None:
+        """Return the printed letter of a name, or with `power` also of a power of a name; ``None`` for other trees."""
+        if power and isinstance(node, Pow):
+            node = node.base
+        elif power and isinstance(node, Call) and node.function == "raised":
+            node = node.arguments[0]
+        return self._reading.letters.get(node.name) if isinstance(node, Sym) else None
 
     def _script(self) -> list[Token]:
         """Read the subscript or superscript after ``^`` or ``_``."""
@@ -144,9 +172,9 @@ class Cursor(ABC):
             rest = Token("number", token.text[1:], token.at + 1)
             self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
             return [Token("number", token.text[0], token.at)]
-        if token.kind == "macro" and (token.text in STYLES or token.text in UPRIGHT or token.text in ACCENTS):
+        if token.is_macro(DECORATIONS - MARKS.keys() | UPRIGHT):
             return [token, *self._group()]
-        if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
+        if token.is_macro(("frac", "tfrac", "dfrac")):
             return [token, *self._group(True), *self._group(True)]
         return [token]
 
@@ -162,19 +190,23 @@ class Cursor(ABC):
                 rest = Token("number", token.text[1:], token.at + 1)
                 self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
                 token = Token("number", token.text[0], token.at)
-            if token.kind == "macro" and (token.text in ACCENTS or token.text in STYLES or token.text in MARKS):
-                inner = [token, *self._group(True)]
-            else:
-                inner = [token]
-            return [Token("open", "{", token.at), *inner, Token("close", "}", token.at)] if braces else inner
+            inner = [token, *(self._group(True) if token.is_macro(DECORATIONS) else ())]
+            return braced(inner, token.at) if braces else inner
         begin, end = self._i - 1, group_end(self._found, self._i - 1)
         self._i = end
         return list(self._found[begin:end] if braces else self._found[begin + 1 : end - 1])
 
     def _peek_group(self) -> list[Token]:
-        if self._peek(1) is None or self._found[self._i + 1].kind != "open":
+        if self._peek(1).kind != "open":
             return list(self._found[self._i + 1 : self._i + 2])
         return list(self._found[self._i + 2 : group_end(self._found, self._i + 1) - 1])
+
+    def _up_to_end(self, nesting: Callable[[Token], int]) -> Sequence[Token]:
+        """Read up to the end of a part whose beginning was read, and return the tokens in it, without the last one."""
+        begin, depth = self._i, 1
+        while depth:
+            depth += nesting(self._take())
+        return self._found[begin : self._i - 1]
 
     def _bracket_end(self, interval: bool = False) -> int:
         """Move past the bracket that closes the next one, of an interval of any kind, and return its position."""
@@ -182,11 +214,10 @@ class Cursor(ABC):
         groups = 0
         while depth:
             token = self._peek()
-            if token is None:
+            if token is END:
                 raise Unread("a bracket is not closed", opening.at)
-            groups += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
-            if groups == 0 and token.kind == "sign":
-                depth += (token.text in "([") - (token.text in ")]")
+            groups += token.group
+            depth += token.nesting if groups == 0 and token.kind == "sign" else 0
             self._i += 1
         if not interval and self._found[self._i - 1].text != {"(": ")", "[": "]"}[opening.text]:
             raise Unread(MIXED_BRACKETS, opening.at)
@@ -205,13 +236,11 @@ def bar_in(part: Sequence[Token], colon: bool = False) -> int:
     """
     depth, bars = 0, []
     for k, token in enumerate(part):
-        depth += (token.kind in ("open", "begin") or token.text in "([") - (
-            token.kind in ("close", "end") or token.text in ")]"
-        )
+        depth += token.nesting
         depth += token.kind == "macro" and (token.text in OPENING) - (token.text in CLOSING)
         if depth == 0 and (token.text == "mid" or (colon and token.text == ":")):
             return k
-        if depth == 0 and token.text in ("|", "vert") and not (token.kind == "macro" and token.text == "|"):
+        if depth == 0 and token.text in ("|", "vert") and not token.is_macro("|"):
             bars.append(k)
     if len(bars) % 2 == 0:
         return -1

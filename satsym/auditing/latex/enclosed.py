@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import CONSTANT, bar_in, listed
@@ -13,7 +13,7 @@ from satsym.auditing.latex.letters import GREEK, Letter, cleaned
 from satsym.auditing.latex.refusals import RefusalCursor
 from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.rows import relation_in, split
-from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.tokens import END, Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FUNCTIONS
 from satsym.formula.tree import Add, Call, Grid, Node, Pow, Sym, Text, constant, symbols
 
@@ -34,7 +34,7 @@ class EnclosedCursor(RefusalCursor):
         if bar >= 0:
             return Call("given", (self._condition(part[:bar], at), *listed(self._condition(part[bar + 1 :], at))))
         found: list[Node] = []
-        for piece in split(part, lambda t: t.kind == "sign" and t.text in ",;"):
+        for piece in split(part, lambda t: t.is_sign(",;")):
             line = relation_in(piece)
             sides = [self._inner(side, at) for side in line.sides]
             steps: list[Node] = [
@@ -48,21 +48,16 @@ class EnclosedCursor(RefusalCursor):
 
     def _is_transform(self, base: Node) -> bool:
         r"""Return whether braces or square brackets follow a letter typeset as an operator, ``\mathcal{L}^{-1}``."""
-        stem = base.base if isinstance(base, Pow) else base
-        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        letter = self._letter_of(base.base if isinstance(base, Pow) else base)
         operator = letter is not None and letter.style == "cal" and letter.base in words.TRANSFORMS
         token = self._peek()
-        if letter == Letter("E") and token is not None and token.kind in ("sign", "macro") and token.text in "[{":
+        if letter == Letter("E") and (token.is_sign("[") or token.is_macro("{")):
             begin = self._i
             inside = [] if token.kind == "macro" else self._found[begin + 1 : self._bracket_end()]
             self._i = begin
-            summed = len(split(inside, lambda t: t.kind == "sign" and t.text in "+-")) > 1
+            summed = len(split(inside, lambda t: t.is_sign("+-"))) > 1
             operator = token.kind == "macro" or bar_in(inside) >= 0 or not summed
-        return (
-            operator
-            and token is not None
-            and (token.text == "[" or (token.kind == "macro" and token.text in "{lbrace"))
-        )
+        return operator and (token.text == "[" or token.is_macro(("{", "lbrace")))
 
     def _transform(self, base: Node) -> Node:
         """Read the argument of a transform or mean."""
@@ -75,17 +70,12 @@ class EnclosedCursor(RefusalCursor):
 
     def _braced(self) -> Sequence[Token]:
         """Return the tokens within braces or angle brackets, after the opening one was read."""
-        begin, depth = self._i, 1
-        while depth:
-            inside = self._take()
-            depth += inside.kind == "macro" and (inside.text in words.OPENING) - (inside.text in words.CLOSING)
-        return self._found[begin : self._i - 1]
+        return self._up_to_end(lambda token: token.is_macro(words.OPENING) - token.is_macro(words.CLOSING))
 
     def _in_a_frame(self) -> Node:
         """Read a letter with its reference frame printed before it, ``{}^A r``: components in this frame."""
         at, said = self._found[self._i].at, []
-        while self._is("^") or self._is("_"):
-            self._i += 1
+        while self._accept("^") or self._accept("_"):
             said.append(cleaned(self._said(self._script())))
         if self._is("{", kind="open") and not self._peek_group():
             self._group()
@@ -107,24 +97,22 @@ class EnclosedCursor(RefusalCursor):
         self._i = behind
         grouped = self._is("{", kind="open") and self._is("(", 1)
         self._i += grouped
-        if known and self._is("^"):
-            self._i += 1
+        if known and self._accept("^"):
             power = self._inner(self._script(), self._found[begin].at)
             if self._is("("):
                 return Pow(Call(word, self._places()), power)
             self._i = behind
         token = self._peek()
         timed = not known and self._is("t", 1, "letter") and self._is(")", 2)
-        if token is not None and not timed and (self._is("(") or (known and self._is("["))):
+        if not timed and (self._is("(") or (known and self._is("["))):
             arguments = self._places()
             self._i += grouped
             return Call(word, arguments)
         letter = self._letter() if known else None
-        after = self._peek()
-        if letter is not None and (after is None or not self._begins_factor(after)):
+        if letter is not None and not self._begins_factor(self._peek()):
             return Call(word, (self._symbol(letter, self._found[begin].at),))
         self._i = behind
-        if known and token is not None and (token.kind == "begin" or self._is("{", kind="macro")):
+        if known and (token.kind == "begin" or token.is_macro("{")):
             return Call(word, (self._factor(),))
         self._i = begin
         return None
@@ -142,23 +130,23 @@ class EnclosedCursor(RefusalCursor):
         group = self._peek_group()
         word = "".join(t.text for t in group)
         behind = self._i + 1 + len(group) + 2 * self._is("{", 1, "open")
-        following = self._found[behind] if behind < len(self._found) else None
-        worn = following is not None and following.text in (*GREEK, *ACCENTS, *words.STYLES)
-        if word == "d" and following is not None and (worn or following.kind in ("letter", "open")):
+        following = self._at(behind)
+        worn = following.text in (*GREEK, *ACCENTS, *words.STYLES)
+        if word == "d" and (worn or following.kind in ("letter", "open")):
             self._i = behind
             return self._differential(token.at)
         if (found := self._named(token.text, word, len(group))) is not None:
             return found
         if word != "constantvector":
             self._refuse_word(token.text, word.strip(), token.at)
-        if word in words.OPTIMA and following is not None and following.text == "_":
+        if word in words.OPTIMA and following.text == "_":
             self._i = behind
             return self._optimum(replace(token, text=word))
         if word in FUNCTIONS and len(word) > 1 and word != "diff":
             self._i = behind
             return self._function(FUNCTIONS[word], token)
         if word.strip(". ") in ("const", "constant", "constantvector", "konstan", "konst", "tetap"):
-            self._i = behind + (behind < len(self._found) and self._found[behind].text == ".")
+            self._i = behind + (following.text == ".")
             self._reading.constants = True
             return Sym(CONSTANT)
         return None
@@ -174,19 +162,18 @@ class EnclosedCursor(RefusalCursor):
         """Read the upright unit after a number; ``None``, with nothing read, if there is no unit."""
         begin, said = self._i, ""
         numeric = constant(last) is not None or (isinstance(last, Call) and last.function == "power")
-        while numeric and (token := self._peek()) is not None:
-            if token.kind == "macro" and token.text in words.UPRIGHT:
+        while numeric and (token := self._peek()) is not END:
+            if token.is_macro(words.UPRIGHT):
                 self._i += 1
                 said += "".join(t.text for t in self._group())
-            elif said and (self._is("^") or (self._is("/") or self._is("cdot", kind="macro"))):
+            elif said and (token.is_sign("^/") or token.is_macro("cdot")):
                 said += {"cdot": " "}.get(token.text, token.text)
                 self._i += 1
                 said += "".join(t.text for t in self._script()) if token.text == "^" else ""
             else:
                 break
         parts = re.findall(r"[A-Za-z]+", said)
-        behind = self._peek()
-        if said and all(part in words.UNITS for part in parts) and (behind is None or not self._begins_factor(behind)):
+        if said and all(part in words.UNITS for part in parts) and not self._begins_factor(self._peek()):
             return Text(said)
         self._i = begin
         return None
@@ -207,7 +194,7 @@ class EnclosedCursor(RefusalCursor):
         """Read values, each with the condition under which it applies."""
         found: list[Node] = []
         for row in rows:
-            cells = split(row, lambda t: t.kind == "sign" and t.text in "&,")
+            cells = split(row, lambda t: t.is_sign("&,"))
             value, *rest = [cell for cell in cells if any(t.text != REMARK for t in cell)]
             said = [token for cell in rest for token in (*cell, Token("sign", ",", cell[-1].at))][:-1]
             spoken = "".join(t.text for t in said if t.text != REMARK)
@@ -223,24 +210,19 @@ class EnclosedCursor(RefusalCursor):
     def _size(self, token: Token) -> Node:
         """Read an expression between bars: absolute value, norm or determinant."""
         closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
-        begin, groups = self._i, 0
-        while True:
-            if self._peek() is None:
-                raise Unread(
-                    "vertical bars without a closing bar, as in evaluations at a point, are not supported", token.at
-                )
-            inside = self._take()
-            groups += (inside.kind in ("open", "begin")) - (inside.kind in ("close", "end"))
-            if groups == 0 and inside.text == closing and inside.kind == token.kind:
-                break
-        inner = self._inner(self._found[begin : self._i - 1], token.at)
+        rest = self._found[self._i :]
+        depths = accumulate(inside.group for inside in rest)
+        ends = (
+            k for k, depth in enumerate(depths) if depth == 0 and rest[k] == replace(token, text=closing, at=rest[k].at)
+        )
+        end = next(ends, -1)
+        if end < 0:
+            why = "vertical bars without a closing bar, as in evaluations at a point, are not supported"
+            raise Unread(why, token.at)
+        self._i += end + 1
+        inner = self._inner(rest[:end], token.at)
         single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
-        if (
-            isinstance(inner, Sym)
-            and (letter := self._reading.letters.get(inner.name))
-            and letter.bold
-            and not self._is("_")
-        ):
+        if (letter := self._letter_of(inner)) and letter.bold and not self._is("_"):
             return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
             return Call("det", (inner,))
@@ -250,8 +232,7 @@ class EnclosedCursor(RefusalCursor):
             )
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
-        if not single and self._is("_"):
-            self._i += 1
+        if not single and self._accept("_"):
             script = self._script()
             if len(script) > 1 and all(t.kind == "letter" for t in script):
                 return Call("indexed_norm", (inner, Sym("".join(t.text for t in script))))

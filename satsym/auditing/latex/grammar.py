@@ -18,7 +18,7 @@ from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines
-from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.tokens import Token, Unread, braced
 from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
 from satsym.formula.tree import Call, Equality, Grid, Mul, Node, Pow, Sym, cells, children, walk
 
@@ -130,8 +130,7 @@ def with_names(found: list[Token], names: Collection[str]) -> list[Token]:
     for begin, end in reversed(list(_runs(found))):
         if "".join(t.text for t in found[begin:end]) in names:
             at = found[begin].at
-            upright = [Token("macro", "mathrm", at), Token("open", "{", at), *found[begin:end], Token("close", "}", at)]
-            found = [*found[:begin], *upright, *found[end:]]
+            found = [*found[:begin], Token("macro", "mathrm", at), *braced(found[begin:end], at), *found[end:]]
     return found
 
 
@@ -166,29 +165,21 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             apart = first == 0 or part[first].at > ends, not behind or behind[0].at > part[last - 1].at + 1
             if name in _UNITS and first and part[first - 1].kind in ("number", "close"):
                 raise Unread("this could be a unit or a factor; set units upright", part[first].at)
-            if name in SAID and (len(name) == len(part) or all(apart)):
+            spelled = len(name) >= _LONG_WORD and name not in CONSTANT and not grouped
+            spelled &= sum(letter in "aeiou" for letter in name) > 1
+            if spelled or (name in SAID and (len(name) == len(part) or all(apart))):
                 raise Unread("words inside a formula are not supported", part[first].at)
-            if (
-                len(name) >= _LONG_WORD
-                and name not in CONSTANT
-                and not grouped
-                and sum(letter in "aeiou" for letter in name) > 1
-            ):
-                raise Unread("words inside a formula are not supported", part[first].at)
+            beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
             called = len(name) > 2 and name[0].isupper() and name[-2:].islower() and bool(set("aeiou") & set(name))
             called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
-            if called and behind and behind[0].text in ("(", "_"):
-                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
-            free = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])} <= {"(", ")", ","}
-            if (name in _GROUPS and free) or (
-                name.isupper() and len(name) == len(part) and (len(name) > 2 or len(line) > 2)
-            ):
-                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
-            numbered = [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
-            beside = {t.text for t in (*part[max(0, first - 1) : first], *behind[:1])}
-            multiplied = name != "GM" and not beside.isdisjoint(_SIGNS)
-            barred = beside == {"|"} and len(name) == 2
-            if name.isupper() and (barred or numbered or multiplied or _is_ratio(part, first, last)):
+            doubtful = called and bool(behind) and behind[0].text in ("(", "_")
+            doubtful |= name in _GROUPS and beside <= {"(", ")", ","}
+            if name.isupper():
+                doubtful |= len(name) == len(part) and (len(name) > 2 or len(line) > 2)
+                doubtful |= [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
+                doubtful |= name != "GM" and not beside.isdisjoint(_SIGNS)
+                doubtful |= (beside == {"|"} and len(name) == 2) or _is_ratio(part, first, last)
+            if doubtful:
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", part[first].at)
     side = line[0]
     begin, end = next(_runs(side), (1, 1)) if side else (1, 1)
@@ -210,10 +201,8 @@ def refuse_powers_of_numbered(reading: Reading, start: int) -> None:
     numbered = {name.rpartition("_upper_")[0] for name in reading.letters if name.endswith(("_upper_0", "_upper_1"))}
     for statement in reading.statements if numbered else ():
         for side in cells(statement):
-            if any(
-                isinstance(part, Pow) and isinstance(part.base, Sym) and part.base.name in numbered
-                for _, part in walk(side)
-            ):
+            powers = [part.base for _, part in walk(side) if isinstance(part, Pow)]
+            if any(isinstance(base, Sym) and base.name in numbered for base in powers):
                 raise Unread(
                     "a letter that has superscript indices is also raised to a power, which is ambiguous", start
                 )

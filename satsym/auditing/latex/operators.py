@@ -10,7 +10,7 @@ from satsym.auditing.latex.cursor import MIXED_BRACKETS, listed
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
-from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.tokens import END, Token, Unread, environment, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
 from satsym.formula.tree import ZERO, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
@@ -29,10 +29,9 @@ class OperatorCursor(QuotientCursor):
         Return ``None``, with nothing read, if there is no such number.
         """
         begin, found = self._i, self._found
-        inside = self._group() if self._peek() else []
+        inside = self._group() if self._peek() is not END else []
         if len(inside) == 1 and inside[0].kind == "number":
-            if inside[0].text == "0" and self._is("_"):
-                self._i += 1
+            if inside[0].text == "0" and self._accept("_"):
                 self._script()
             return Num(Fraction(inside[0].text))
         self._i, self._found = begin, found
@@ -50,7 +49,7 @@ class OperatorCursor(QuotientCursor):
             if self._is(sign, kind="macro"):
                 self._i += 1
                 return Call(name, (self._factor(), *by))
-        if self._peek() is None:
+        if self._peek() is END:
             return Sym("nabla")
         return Call("gradient", (self._factor(), *by))
 
@@ -102,8 +101,7 @@ class OperatorCursor(QuotientCursor):
         power: Node | None = None
         if self._is("^"):
             at = self._take().at
-            script = self._script()
-            power = self._inner(script, at)
+            power = self._inner(self._script(), at)
             if constant(power) == -1 and name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "log", "exp"):
                 if name not in ("sin", "cos", "tan"):
                     raise Unread("the inverse of this function is not supported", at)
@@ -118,7 +116,7 @@ class OperatorCursor(QuotientCursor):
             raise Unread(f"indices of {name} are not supported", self._take().at)
         if self._is("(") or self._is("["):
             arguments = self._arguments()
-        elif self._is("{", kind="open") or self._peek() is None:
+        elif self._is("{", kind="open") or self._peek() is END:
             arguments = [self._inner(self._group(), token.at)]
         elif self._is("{", kind="macro"):
             arguments = [self._factor()]
@@ -151,28 +149,27 @@ class OperatorCursor(QuotientCursor):
         begin = self._i
         arguments = self._arguments(interval=True)
         if self._found[self._i - 1].text != "])"[not square]:
-            if len(arguments) != 2 or self._peek() is not None:
+            if len(arguments) != 2 or self._peek() is not END:
                 raise Unread(MIXED_BRACKETS, at)
             return Call("closed_open" if square else "open_closed", tuple(arguments))
         inner = arguments[0] if len(arguments) == 1 else None
-        if len(arguments) == 1 and (self._is("_") or self._is("^")) and (crossed := self._peek(1)) is not None:
-            script = self._peek_group() if crossed.kind == "open" else [crossed]
-            if [t.text for t in script] == ["times"]:
-                self._i += 1
-                self._script()
-                return Call("skew", (arguments[0],))
+        scripted = len(arguments) == 1 and (self._is("_") or self._is("^"))
+        if scripted and [t.text for t in self._peek_group()] == ["times"]:
+            self._i += 1
+            self._script()
+            return Call("skew", (arguments[0],))
         vectors = inner.factors[-1] if isinstance(inner, Mul) else inner
-        letter = self._reading.letters.get(vectors.name) if isinstance(vectors, Sym) else None
+        letter = self._letter_of(vectors) if vectors else None
         if square and letter and letter.bold and not letter.marks and (not self._is("^") or self._is("2", 1, "number")):
             raise Unread("vectors in square brackets are not supported, as they could mean matrices", at)
-        if square and isinstance(inner, Sym) and inner.name.islower() and begin == 0 and self._peek() is None:
+        if square and isinstance(inner, Sym) and inner.name.islower() and begin == 0 and self._peek() is END:
             raise Unread("letters in square brackets are not supported, as they could mean dimensions", at)
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
         parted = any(token.text == "quad" for token in self._found[begin : self._i])
+        before = self._at(begin - 1)
         if len(arguments) > 1 and square and not parted and self._may_be_of_fields(begin, arguments):
-            before = self._found[begin - 1] if begin else None
-            if len(arguments) > 2 or (before is not None and (before.kind == "letter" or before.text in GREEK)):
+            if len(arguments) > 2 or before.kind == "letter" or before.text in GREEK:
                 raise Unread("brackets with a comma are not supported, as they could be Lie brackets", at)
             fields = Call("bracket", tuple(Call("bracket", a.entries) if isinstance(a, Grid) else a for a in arguments))
             if not (self._is("(") and self._is_place_next()):
@@ -180,7 +177,6 @@ class OperatorCursor(QuotientCursor):
             inside = self._found[self._i + 1 : self._bracket_end()]
             return Call("value", (fields, self._inner(inside, at)))
         if len(arguments) > 1 and begin:
-            before = self._found[begin - 1]
             signed = before.kind in ("sign", "open") and before.text not in ")]'"
             if not signed and before.kind != "number" and before.text not in words.SIGNS:
                 raise Unread("arguments in brackets after this expression are not supported", at)
@@ -198,21 +194,20 @@ class OperatorCursor(QuotientCursor):
     def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
         """Return whether a bracket that was read could be a Lie bracket of fields instead of a vector."""
         nested = [isinstance(argument, Grid) for argument in arguments]
-        behind = self._peek()
-        alone = begin == 0 and (behind is None or behind.text in ("|", "vert", "rvert"))
+        alone = begin == 0 and (self._peek() is END or self._peek().text in ("|", "vert", "rvert"))
         return (any(nested) and not all(nested)) or not (alone or self._is("^"))
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Return whether a bracket with one letter or function follows a letter, as in an expectation."""
         inside = self._found[begin + 1 : self._i - 1]
-        before = self._found[begin - 1] if begin else None
-        behind = before is not None and (before.kind in ("letter", "close") or before.text in GREEK)
+        before = self._at(begin - 1)
+        behind = before.kind in ("letter", "close") or before.text in GREEK
         if self._is_taken(inside):
             return behind
         letter = self._letter_in(inside)
         alone = letter is not None and letter == letter.plain and not letter.dots
-        called = len(inside) > 1 and inside[0].kind == "macro" and inside[0].text in FUNCTIONS
-        called = called and len(split(inside, lambda token: token.kind == "sign" and token.text in "+-")) == 1
+        called = len(inside) > 1 and inside[0].is_macro(FUNCTIONS)
+        called = called and len(split(inside, lambda token: token.is_sign("+-"))) == 1
         return (alone or called) and behind
 
     def _may_be_a_name(self, inner: Node | None) -> bool:
@@ -227,18 +222,14 @@ class OperatorCursor(QuotientCursor):
         if token.text == "array" and self._is("{", kind="open"):
             self._group()
         option = self._peek(1)
-        if self._is("[") and self._is("]", 2) and option and (option.kind == "number" or option.text in "clr"):
+        if self._is("[") and self._is("]", 2) and (option.kind == "number" or option.text in "clr"):
             self._i += 3  # how far lines stand apart
-        begin, depth = self._i, 1
-        while depth:
-            inside = self._take()
-            depth += (inside.kind == "begin") - (inside.kind == "end")
-        body = self._found[begin : self._i - 1]
-        rows = [r for r in split(body, lambda t: t.kind == "macro" and t.text in ("\\", "cr")) if r]
+        body = self._up_to_end(environment)
+        rows = [r for r in split(body, lambda t: t.is_macro(("\\", "cr"))) if r]
         if token.text.endswith("cases"):
             return self._cases(rows, token.at)
         entries = []
-        parted = [split(row, lambda t: t.kind == "sign" and t.text == "&") for row in rows]
+        parted = [split(row, lambda t: t.is_sign("&")) for row in rows]
         width = min(map(len, parted), default=1)
         for row, cells in zip(rows, parted, strict=True):
             if len(cells) == width + 1 and not cells[-1]:
@@ -246,7 +237,7 @@ class OperatorCursor(QuotientCursor):
             if len(cells) > 1:  # commas between columns
                 cells = [cell[: len(cell) - (cell[-1:] != [] and cell[-1].text == ",")] for cell in cells]
             if len(cells) == 1:  # a row may be printed with commas
-                cells = split(row, lambda t: t.kind == "sign" and t.text == ",")
+                cells = split(row, lambda t: t.is_sign(","))
             entries.append(Grid(tuple(self._inner(cell, token.at) if cell else ZERO for cell in cells)))
         if not entries or len({len(entry.entries) for entry in entries}) > 1:
             raise Unread("all rows of a matrix must have the same length", token.at)
@@ -294,7 +285,7 @@ class OperatorCursor(QuotientCursor):
 
         Return ``None`` if its powers could mean something else, e.g. iterates of a function.
         """
-        letter = self._reading.letters.get(power.base.name) if isinstance(power.base, Sym) else None
+        letter = self._letter_of(power.base)
         exponent = constant(power.exponent)
         unclear = letter is None or letter.base in words.FIELDS or letter.base in ("delta", "T", *words.ARGUED)
         return None if unclear or exponent is None or exponent < 2 else letter
@@ -303,8 +294,7 @@ class OperatorCursor(QuotientCursor):
         if not script:
             return base
         if len(script) == 1 and script[0].text == "circ" and isinstance(base, Num):
-            behind = self._peek()
-            if behind is not None and "".join(t.text for t in [behind, *self._peek_group()][-1:]) in ("C", "F", "K"):
+            if "".join(t.text for t in [self._peek(), *self._peek_group()][-1:]) in ("C", "F", "K"):
                 raise Unread("units in formulas are not supported", at)
             return Div(Mul((base, Sym("pi"))), Num(Fraction(180)))
         upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
@@ -341,8 +331,7 @@ class OperatorCursor(QuotientCursor):
             raise Unread("a product of vectors needs a vector on both sides", sign.at)  # inertia, or the identity
         right = [self._signed_factor()]
         while not self._is_vector(right[-1]):
-            token = self._peek()
-            if token is None or not self._begins_factor(token):
+            if not self._begins_factor(self._peek()):
                 if product == "cross":
                     raise Unread("a product of vectors needs a vector on both sides", sign.at)
                 return product_of([left, *right])

@@ -7,19 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.tokens import Token, group_end
+from satsym.auditing.latex.tokens import END, Token, braced, end_of, environment, group_at, group_end
 from satsym.auditing.latex.words import RELATIONS, STYLES, UNITS
 
-_OTHER_NAMES = {
-    "cross": "times",
-    "vdot": "cdot",
-    "dotproduct": "cdot",
-    "crossproduct": "times",
-    "grad": "nabla",
-    "bigcdot": "cdot",
-    "centerdot": "cdot",
-}
-_OTHER_NAMES |= {"vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
+_OTHER_NAMES = {"cross": "times", "crossproduct": "times", "vdot": "cdot", "dotproduct": "cdot", "bigcdot": "cdot"}
+_OTHER_NAMES |= {"centerdot": "cdot", "grad": "nabla", "vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
 _OTHER_NAMES |= {name.capitalize(): name for name in ("dot", "ddot", "hat", "bar", "tilde", "check", "breve", "vec")}
 _UNITS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "newton": "N", "radian": "rad", "degree": "deg"}
 _UNITS |= {
@@ -38,6 +30,9 @@ _UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " 
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
 _DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial", "odv": "d"}
 _DERIVATIVES |= {"diff": "d", "diffp": "partial"}
+_BOLD = ("boldsymbol", "bm", "mathbf", "pmb", "symbf")
+_QUANTITIES = {"SI": 2, "qty": 2, "si": 1, "num": 1, "unit": 1}
+"""Macros of the package siunitx -> their numbers of arguments."""
 
 
 def put_in(found: Sequence[Token]) -> list[Token]:
@@ -49,21 +44,19 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         i += 1
         name = token.text if token.kind == "macro" else ""
         after = [t.text for t in found[i : i + 3]]
+        first = found[i] if i < len(found) else END
         if name in STYLES and (after[:1] == ["nabla"] or after == ["{", "nabla", "}"]):
             done.append(Token("macro", "nabla", token.at))
             i += 1 if after[0] == "nabla" else 3
-        elif name == "qty" and after[:1] and after[0] in "([":
+        elif name == "qty" and first.text in "([":
             continue
-        elif (
-            token.kind == "open" and i < len(found) and found[i].kind == "macro" and found[i].text in ("rm", "it", "sf")
-        ):
-            done += [replace(found[i], text="mathrm"), token]
+        elif token.kind == "open" and first.is_macro(("rm", "it", "sf")):
+            done += [replace(first, text="mathrm"), token]
             i += 1
-        elif name in ("boldsymbol", "bm", "mathbf", "pmb", "symbf") and i < len(found) and found[i].kind == "open":
-            end = group_end(found, i)
-            done += _bold(token, found[i + 1 : end - 1])
-            i = end
-        elif name in ("SI", "si", "num", "unit", "qty") and i < len(found) and found[i].text in ("{", "["):
+        elif name in _BOLD and first.kind == "open":
+            inside, i = group_at(found, i)
+            done += _bold(token, inside)
+        elif name in _QUANTITIES and first.text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside
         elif name in ("stackrel", "underset", "overset") and (rows := _stacked(found, i)):
@@ -72,53 +65,44 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         elif name in ("{", "lbrace") and (rows := _values_in_cases(done, found, i)):
             done = done[:-1] if done[-1].text == "left" else done
             done += put_in(rows)
-            i = _environment_end(found, i)
+            i = end_of(found, i, environment)
             i += 2 if [t.text for t in found[i : i + 2]] == ["right", "."] else 0
-        elif name == "substack" and i < len(found) and found[i].kind == "open":
-            end = group_end(found, i)
-            inside = put_in(found[i + 1 : end - 1])
-            done += [Token("sign", ",", t.at) if (t.kind, t.text) == ("macro", "\\") else t for t in inside]
-            i = end
-        elif name == "operatorname" and i < len(found) and found[i].text == "*":
-            end = group_end(found, i + 1)
-            said = "".join(t.text for t in found[i + 2 : end - 1] if t.kind == "letter")
+        elif name == "substack" and first.kind == "open":
+            inside, i = group_at(found, i)
+            done += [Token("sign", ",", t.at) if t.is_macro("\\") else t for t in put_in(inside)]
+        elif name == "operatorname" and first.text == "*":
+            inside, end = group_at(found, i + 1)
+            said = "".join(t.text for t in inside if t.kind == "letter")
             optimum = said in ("argmin", "argmax")
             done.append(replace(token, text=said) if optimum else token)
             i = end if optimum else i + 1
         elif name == "degree":
             done += [Token("sign", "^", token.at), Token("macro", "circ", token.at)]
-        elif name == "arg" and i < len(found) and found[i].text in ("min", "max"):
-            done.append(Token("macro", f"arg{found[i].text}", token.at))
+        elif name == "arg" and first.text in ("min", "max"):
+            done.append(Token("macro", f"arg{first.text}", token.at))
             i += 1
         elif name in _OTHER_NAMES:
             done.append(Token("macro", _OTHER_NAMES[name], token.at))
-        elif name in _BARS and i < len(found) and found[i].text in "*{":
-            i += found[i].text == "*"
-            end = group_end(found, i)
+        elif name in _BARS and first.text in ("*", "{"):
+            inside, i = group_at(found, i + (first.text == "*"))
             opening, closing = (Token("macro", bar, token.at) for bar in _BARS[name])
-            done += [opening, *put_in(found[i + 1 : end - 1]), closing]
-            i = end
-        elif name in _DERIVATIVES and i < len(found) and (found[i].kind == "open" or found[i].text == "["):
+            done += [opening, *put_in(inside), closing]
+        elif name in _DERIVATIVES and (first.kind == "open" or first.text == "["):
             order, i = _order(found, i)
-            groups: list[list[Token]] = []
-            while i < len(found) and found[i].kind == "open" and len(groups) < 2:
-                end = group_end(found, i)
-                groups.append(put_in(found[i + 1 : end - 1]))
-                i = end
-            done += _quotient(_DERIVATIVES[name], order, groups, token.at)
+            groups, i = _groups(found, i, 2)
+            done += _quotient(_DERIVATIVES[name], order, [put_in(group) for group in groups], token.at)
         else:
             done.append(token)
     return done
 
 
-def _environment_end(found: Sequence[Token], i: int) -> int:
-    """Return the position after the environment that begins at a position."""
-    depth = 0
-    for k in range(i, len(found)):
-        depth += (found[k].kind == "begin") - (found[k].kind == "end")
-        if depth == 0:
-            return k + 1
-    return len(found)
+def _groups(found: Sequence[Token], i: int, most: int) -> tuple[list[Sequence[Token]], int]:
+    """Return the contents of the groups that follow each other at a position, and the position after them."""
+    groups: list[Sequence[Token]] = []
+    while i < len(found) and found[i].kind == "open" and len(groups) < most:
+        inside, i = group_at(found, i)
+        groups.append(inside)
+    return groups, i
 
 
 def _values_in_cases(done: Sequence[Token], found: Sequence[Token], i: int) -> list[Token]:
@@ -126,7 +110,7 @@ def _values_in_cases(done: Sequence[Token], found: Sequence[Token], i: int) -> l
     before = [t.text for t in done if t.text not in ("left", "&", "\\,")][-1:]
     if before != ["="] or i >= len(found) or found[i].kind != "begin" or found[i].text not in ("array", "aligned"):
         return []
-    end = _environment_end(found, i)
+    end = end_of(found, i, environment)
     begin = group_end(found, i + 1) if found[i].text == "array" and found[i + 1].kind == "open" else i + 1
     closing = [t.text for t in found[end : end + 2]]
     if closing[:1] == ["}"] or (closing[:1] == ["right"] and closing != ["right", "."]):
@@ -137,11 +121,8 @@ def _values_in_cases(done: Sequence[Token], found: Sequence[Token], i: int) -> l
 
 def _stacked(found: Sequence[Token], i: int) -> list[Token]:
     """Return two relations that are set above each other as a list; empty for anything else."""
-    end = group_end(found, i)
-    if end >= len(found) or found[i].kind != "open" or found[end].kind != "open":
-        return []
-    rows = [found[i + 1 : end - 1], found[end + 1 : group_end(found, end) - 1]]
-    if not all(any(t.text == "=" or t.text in RELATIONS for t in row[1:-1]) for row in rows):
+    rows, _ = _groups(found, i, 2)
+    if len(rows) < 2 or not all(any(t.text == "=" or t.text in RELATIONS for t in row[1:-1]) for row in rows):
         return []
     return [*rows[0], Token("sign", ",", found[i].at), *rows[1]]
 
@@ -150,31 +131,26 @@ def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token]
     """Return the tokens of a number with its unit in the notation of siunitx, and the position after it."""
     if found[i].text == "[":
         i = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1) + 1
-    groups: list[list[Token]] = []
-    while i < len(found) and found[i].kind == "open" and len(groups) < (2 if macro.text in ("SI", "qty") else 1):
-        end = group_end(found, i)
-        groups.append(list(found[i + 1 : end - 1]))
-        i = end
-    number = groups.pop(0) if groups and macro.text in ("SI", "num", "qty") else []
+    groups, i = _groups(found, i, _QUANTITIES[macro.text])
+    number = groups.pop(0) if groups and macro.text in ("SI", "num", "qty") else ()
     if not groups:
-        return number, i
+        return list(number), i
     said = "".join(_UNITS.get(t.text, t.text) for t in groups[0])
     if not all(part in UNITS for part in re.findall(r"[A-Za-z]+", said)):
         return [macro], i
     letters = [Token("letter" if c.isalpha() else "sign", c, macro.at) for c in said.strip()]
-    return [*number, Token("macro", "mathrm", macro.at), _brace(True, macro.at), *letters, _brace(False, macro.at)], i
+    return [*number, Token("macro", "mathrm", macro.at), *braced(letters, macro.at)], i
 
 
 def _bold(macro: Token, inside: Sequence[Token]) -> list[Token]:
     """Return the tokens of a bold group, in which each letter of a formula is set bold on its own."""
-    alone = [k for k, t in enumerate(inside) if t.kind == "letter" or (t.kind == "macro" and t.text in GREEK)]
+    alone = [k for k, t in enumerate(inside) if t.kind == "letter" or t.is_macro(GREEK)]
     alone = [k for k in alone if not (k and inside[k - 1].text in "^_") and not _within_script(inside, k)]
-    if len(alone) < 2 and not any(t.kind == "sign" and t.text in "=+-()^" for t in inside):
-        return [macro, _brace(True, macro.at), *inside, _brace(False, macro.at)]
+    if len(alone) < 2 and not any(t.is_sign("=+-()^") for t in inside):
+        return [macro, *braced(inside, macro.at)]
     done: list[Token] = []
     for k, token in enumerate(inside):
-        at = token.at
-        done += [replace(macro, at=at), _brace(True, at), token, _brace(False, at)] if k in alone else [token]
+        done += [replace(macro, at=token.at), *braced([token], token.at)] if k in alone else [token]
     return done
 
 
@@ -194,17 +170,11 @@ def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
         return [], i
     end = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1)
     at = found[i].at
-    return [Token("sign", "^", at), _brace(True, at), *found[i + 1 : end], _brace(False, at)], end + 1
+    return [Token("sign", "^", at), *braced(found[i + 1 : end], at)], end + 1
 
 
 def _quotient(sign: str, order: list[Token], groups: list[list[Token]], at: int) -> list[Token]:
     """Return the tokens of a quotient of differentials, or of a derivative operator if there is only one group."""
     of, by = groups if len(groups) == 2 else ([], groups[0] if groups else [])
     mark = Token("letter" if sign == "d" else "macro", sign, at)
-    above = [_brace(True, at), mark, *order, *of, _brace(False, at)]
-    below = [_brace(True, at), mark, *by, *order, _brace(False, at)]
-    return [Token("macro", "frac", at), *above, *below]
-
-
-def _brace(opens: bool, at: int) -> Token:
-    return Token("open", "{", at) if opens else Token("close", "}", at)
+    return [Token("macro", "frac", at), *braced([mark, *order, *of], at), *braced([mark, *by, *order], at)]

@@ -12,7 +12,7 @@ from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.operators import product_of
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.sums import SumCursor
-from satsym.auditing.latex.tokens import Token, Unread
+from satsym.auditing.latex.tokens import END, Token, Unread
 from satsym.auditing.latex.words import ACCENTS, ATOMS, FUNCTIONS, KEPT_GROUPS, MARKS
 from satsym.formula.reading import MAX_DEPTH
 from satsym.formula.tree import Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
@@ -24,7 +24,7 @@ class Parser(SumCursor):
 
     def side(self) -> Node:
         """Read the whole side, which may be a list."""
-        parts = split(self._found, lambda token: token.kind == "sign" and token.text == ",")
+        parts = split(self._found, lambda token: token.is_sign(","))
         if len(parts) < 2:
             return self.whole()
         return Call("list", tuple(self._inner(part, self._start) for part in parts))
@@ -39,22 +39,22 @@ class Parser(SumCursor):
     def _product(self, argument: bool = False) -> Node:
         """Read a term, or with `argument` the argument of a function without brackets."""
         chain, crossed = [self._signed_factor()], ""
-        while (token := self._peek()) is not None:
-            text, sign, macro = token.text, token.kind == "sign", token.kind == "macro"
-            times = (sign and text == "*") or (macro and text in words.TIMES)
-            over = (sign and text in "/:") or (macro and text == "div")
+        while (token := self._peek()) is not END:
+            text = token.text
+            times = token.is_sign("*") or token.is_macro(words.TIMES)
+            over = token.is_sign("/:") or token.is_macro("div")
             if argument and (times or over or not self._continues_argument(token, chain[-1])):
                 break
             if times:
                 crossed = self._times(token, chain, crossed)
-            elif macro and text in words.OF_SETS:
+            elif token.is_macro(words.OF_SETS):
                 self._i += 1
                 return Call(words.OF_SETS[text], (product_of(chain), self._product()))
             elif (unit := self._unit(chain[-1])) is not None:
                 return Call("in_unit", (product_of(chain), unit))
             elif over:
                 chain = [self._over(token, chain)]
-            elif macro and text in words.BETWEEN:
+            elif token.is_macro(words.BETWEEN):
                 self._i += 1
                 chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
             elif self._begins_factor(token):
@@ -91,9 +91,9 @@ class Parser(SumCursor):
         scalar = crossed == "number" or any(constant(side) is not None for side in (before, chain[-1]))
         if sign.text == "times" and not scalar and not isinstance(before, Grid):
             right = [chain.pop()]
-            while (token := self._peek()) is not None and self._begins_factor(token):
+            while self._begins_factor(self._peek()):
                 right.append(self._factor())
-            if crossed or (token is not None and token.text in words.TIMES):
+            if crossed or self._peek().text in words.TIMES:
                 raise Unread(words.EITHER_PRODUCT, sign.at)
             chain[-1] = Call("times", (before, product_of(right)))
             return "times"
@@ -105,26 +105,24 @@ class Parser(SumCursor):
             raise Unread("the argument of a function before a slash needs brackets", slash.at)
         self._i += 1
         following = self._peek()
-        if slash.text == ":" and not (isinstance(chain[-1], Num) and following and following.kind == "number"):
+        if slash.text == ":" and not (isinstance(chain[-1], Num) and following.kind == "number"):
             raise Unread("a colon is not supported here", slash.at)
         divisor, unit = self._signed_factor(), self._peek()
-        if isinstance(divisor, Num) and unit is not None and unit.text in words.UPRIGHT:
+        if isinstance(divisor, Num) and unit.text in words.UPRIGHT:
             raise Unread("units after a slash are not supported", unit.at)
-        if unit is not None and self._may_be_divided_by(unit, chain, divisor):
+        if self._may_be_divided_by(unit, chain, divisor):
             raise Unread("without brackets, it is not clear what the slash divides by", slash.at)
         return Div(product_of(chain), divisor)
 
     def _is_along_field(self, node: Node) -> bool:
         """Return whether an expression is the sign of a derivative along a field, as in ``L_f h``, or a power of it."""
-        stem = node.base if isinstance(node, Pow) else node
-        stem = stem.arguments[0] if isinstance(stem, Call) and stem.function == "raised" else stem
-        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        letter = self._letter_of(node, power=True)
         return letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in words.FIELDS
 
     def _applied(self, operator: Node) -> Node:
         """Read what an operator is applied to, which may be another operator with its operand."""
-        operand, token = self._factor(), self._peek()
-        if token is not None and self._begins_factor(token) and self._is_along_field(operand):
+        operand = self._factor()
+        if self._begins_factor(self._peek()) and self._is_along_field(operand):
             operand = self._applied(operand)
         return Call("applied", (operator, operand))
 
@@ -136,16 +134,7 @@ class Parser(SumCursor):
         return self._factor()
 
     def _begins_factor(self, token: Token) -> bool:
-        if token.kind in ("letter", "number", "open", "begin"):
-            return True
-        if token.kind == "sign":
-            return token.text in "([" or (token.text == "|")
-        if token.kind != "macro":
-            return False
-        if token.text in ("lvert", "lVert") or (token.text in ("|", "Vert", "vert")):
-            return True
-        known = (GREEK, FUNCTIONS, words.RECIPROCALS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS)
-        return any(token.text in names for names in known) or token.text in ATOMS
+        return token.kind in ("letter", "number", "open", "begin") or token.is_sign("([|") or token.is_macro(_FACTORS)
 
     def _factor(self) -> Node:
         """Read a factor with its powers.
@@ -162,20 +151,15 @@ class Parser(SumCursor):
             self._depth -= 1
 
     def _factor_within(self) -> Node:
-        token = self._peek()
-        if token is None:
-            self._take()
-        assert token is not None
         if self._is("^") or self._is("_"):
             return self._powers(self._in_a_frame())
-        found = self._derivative(token)
+        found = self._derivative(self._peek())
         if isinstance(found, Call) and found.function == "diff" and self._is("("):
             begin, arguments = self._i, self._arguments()
             if len(arguments) > 1:
                 return self._powers(Call("value", (found, *arguments)))
             self._i = begin
-        base = found if found is not None else self._atom()
-        return self._powers(base)
+        return self._powers(found if found is not None else self._atom())
 
     def _powers(self, base: Node) -> Node:
         while True:
@@ -188,14 +172,14 @@ class Parser(SumCursor):
                 base = self._raised(base, self._script(), at)
                 if known and self._is("(") and isinstance(base, Pow | Call):
                     base = self._timed_behind_power(base)
-            elif (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
-                self._i += 2
+            elif self._is_bar_of_place():
+                at = self._take().at
+                self._i += 1
                 below = self._script()
-                if self._is("^"):
-                    self._i += 1
-                    ends = self._script(), below
-                    return Call("between", (base, *(self._condition(end, bar.at) for end in ends[::-1])))
-                base = self._taken(base, below, bar.at)
+                if self._accept("^"):
+                    ends = below, self._script()
+                    return Call("between", (base, *(self._condition(end, at) for end in ends)))
+                base = self._taken(base, below, at)
             elif self._is("_") and not isinstance(base, Num):
                 bracketed, at = self._found[self._i - 1].text == "]", self._take().at
                 script = self._script()
@@ -213,23 +197,20 @@ class Parser(SumCursor):
                 else:
                     base = Call("indexed", (base, self._indices_of(script, at)))
             elif self._is("'") and not self._is("'", 1) and self._has_matrix(base):
-                self._i, self._reading.transposing = self._i + 1, True
+                self._reading.transposing = self._accept("'")
                 base = Call("transpose", (base,))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime is not allowed here", self._take().at)
-            elif self._is("!") and isinstance(base, Num) and base.value.denominator == 1 and 0 <= base.value <= 12:
-                self._i += 1
-                base = Num(Fraction(factorial(int(base.value))))
-            elif self._is("!"):
-                self._i += 1
-                base = Call("factorial", (base,))
+            elif self._accept("!"):
+                value = base.value if isinstance(base, Num) else -1
+                base = Num(Fraction(factorial(int(value)))) if value in range(13) else Call("factorial", (base,))
             else:
                 return base
 
     def _indices_of(self, script: Sequence[Token], at: int) -> Node:
         """Read the index of a bracket, which is one expression or several, e.g. those of a matrix entry."""
         letters = all(t.kind == "letter" for t in script)
-        parts = [[t] for t in script] if letters else split(script, lambda t: t.kind == "sign" and t.text == ",")
+        parts = [[t] for t in script] if letters else split(script, lambda t: t.is_sign(","))
         indices = [self._inner(part, at) for part in parts]
         if any(isinstance(index, Mul) for index in indices):
             raise Unread("this index is not supported", at)
@@ -243,29 +224,23 @@ class Parser(SumCursor):
     def _atom(self) -> Node:
         token = self._take()
         if token.kind == "number":
-            if token.text == "0" and self._is("_"):  # the size of a zero matrix
-                self._i += 1
+            if token.text == "0" and self._accept("_"):  # the size of a zero matrix
                 self._script()
             return Num(Fraction(token.text))
         if token.kind == "open":
             self._i -= 1
-            at = token.at
             inner = self._group()
-            if not inner and self._is("^"):
-                return self._in_a_frame()
             if not inner:
-                return self._factor()
+                return self._in_a_frame() if self._is("^") else self._factor()
             if letter := self._letter_in(inner):
-                return self._symbol(self._scripts(letter), at)
-            return self._inner(inner, at)
-        if token.kind == "sign" and token.text in "([":
+                return self._symbol(self._scripts(letter), token.at)
+            return self._inner(inner, token.at)
+        if token.is_sign("(["):
             self._i -= 1
             return self._bracket()
         if token.kind == "begin":
             return self._environment(token)
-        if (token.kind == "sign" and token.text == "|") or (
-            token.kind == "macro" and token.text in ("lvert", "lVert", "|", "vert", "Vert")
-        ):
+        if token.is_sign("|") or token.is_macro(words.BARS):
             return self._size(token)
         if token.kind == "macro":
             return self._macro(token)
@@ -275,15 +250,11 @@ class Parser(SumCursor):
                 return Sym(CONSTANT)
             if (called := self._spelled_function(token)) is not None:
                 return called
-            twice = self._peek()
-            if twice is not None and (twice.text, twice.at) == (token.text, token.at + 1) and self._is("_", 1):
-                raise Unread("a doubled letter with an index could be one name", token.at)
             after = self._peek()
-            beside = after is not None and after.at <= token.at + 2
-            differs = after is not None and (
-                after.kind == "letter" or after.text in GREEK or after.text in words.STYLES
-            )
-            if token.text == "d" and beside and differs:
+            if (after.text, after.at) == (token.text, token.at + 1) and self._is("_", 1):
+                raise Unread("a doubled letter with an index could be one name", token.at)
+            differs = after.kind == "letter" or after.text in GREEK or after.text in words.STYLES
+            if token.text == "d" and after.at <= token.at + 2 and differs:
                 return self._differential(token.at)
             self._i -= 1
             letter = self._letter()
@@ -318,8 +289,7 @@ class Parser(SumCursor):
             return Call("binomial", (self._inner(self._group(), token.at), self._inner(self._group(), token.at)))
         if name in KEPT_GROUPS:
             inner = self._inner(self._group(), token.at)
-            if self._is("_") or self._is("^"):  # what is written beside the brace
-                self._i += 1
+            if self._accept("_") or self._accept("^"):  # what is written beside the brace
                 self._script()
             return inner
         if name in words.STYLES and (zero := self._peek_number()) is not None:
@@ -349,10 +319,10 @@ class Parser(SumCursor):
         assert letter is not None
         after = self._peek()
         short = name in words.UPRIGHT and letter in (Letter("s"), Letter("c"))
-        if short and after is not None and after.kind == "macro" and after.text in GREEK:
+        if short and after.is_macro(GREEK):
             raise Unread("s and c could be abbreviations of sine and cosine", token.at)
         plain = name.startswith(("text", "mbox")) and len(letter.base) > 3 and letter == Letter(letter.base)
-        if plain and after is not None and self._begins_factor(after) and after.text != "(":
+        if plain and self._begins_factor(after) and after.text != "(":
             raise Unread("words inside a formula are not supported", token.at)
         if name in words.UPRIGHT and len(letter.base) > 1 and letter.base in words.UNITS:
             raise Unread("units in formulas are not supported", token.at)
@@ -362,6 +332,10 @@ class Parser(SumCursor):
         return self._symbol(letter, token.at)
 
 
+_FACTORS = frozenset(GREEK).union(
+    *(FUNCTIONS, words.RECIPROCALS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS, ATOMS, words.BARS)
+)
+"""Macros with which a factor can begin."""
 _READERS: Mapping[str, Callable[[Parser, Token], Node]] = {
     "sqrt": lambda parser, _: parser._root(),
     "nabla": Parser._gradient,

@@ -60,7 +60,7 @@ class PlaceCursor(LetterCursor):
         if self._is("("):
             self._bracket_end()
         behind, self._i = self._peek(), begin
-        return letter.base.isupper() or letter.bold or (behind is not None and self._begins_factor(behind))
+        return letter.base.isupper() or letter.bold or self._begins_factor(behind)
 
     def _order_of_magnitude(self, letter: Letter) -> Node | None:
         """Read the argument of the symbol of Landau; ``None``, with nothing read, if O could be a letter here."""
@@ -157,7 +157,7 @@ class PlaceCursor(LetterCursor):
         divided = letter.bold and any(t.text in ("/", "frac") for t in inside) and not has_bold(inside)
         divided |= {"plus", "minus"} & {*letter.marks} != set() and any(t.text == "/" for t in inside)
         transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
-        step = letter in (Letter("H"), Letter("delta")) and any(t.kind == "sign" and t.text in "+-" for t in inside)
+        step = letter in (Letter("H"), Letter("delta")) and any(t.is_sign("+-") for t in inside)
         step &= not any(t.text == "(" for t in inside)
         return turned or taken or order or transposed or step or divided
 
@@ -231,7 +231,7 @@ class PlaceCursor(LetterCursor):
     def _is_factor(self, letter: Letter, part: Sequence[Token]) -> bool:
         """Return whether a product in brackets after a letter is a factor, as products of matrices or vectors are."""
         crossed = any(t.text in ("times", "cdot") for t in part) and letter.base not in SHIFTED
-        bold = [t for t in part if t.kind == "macro" and t.text in STYLES]
+        bold = [t for t in part if t.is_macro(STYLES)]
         plain = [
             t for k, t in enumerate(part) if t.kind == "letter" and not (k and part[k - 1].kind in ("open", "macro"))
         ]
@@ -250,8 +250,7 @@ class PlaceCursor(LetterCursor):
         first = inner._letter()
         while first is not None and inner._is("^"):
             inner._i = inner._script_end()
-        behind = inner._peek()
-        return first is not None and behind is not None and (behind.kind in ("letter", "macro") or behind.text == "(")
+        return first is not None and (inner._peek().kind in ("letter", "macro") or inner._is("("))
 
 
 def _is_scalar(letter: Letter) -> bool:

@@ -7,16 +7,8 @@ from dataclasses import replace
 
 from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
-from satsym.auditing.latex.tokens import Token, Unread, group_end, in_tex
-from satsym.auditing.latex.words import (
-    ACCENTS,
-    INDICES,
-    MARKS,
-    STARS,
-    STYLES,
-    TRANSPOSED,
-    UPRIGHT,
-)
+from satsym.auditing.latex.tokens import END, Token, Unread, braced, group_end, in_tex
+from satsym.auditing.latex.words import ACCENTS, DECORATIONS, INDICES, MARKS, STARS, STYLES, TRANSPOSED, UPRIGHT
 
 _SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to", "=": "equal"}
 """Signs in an index -> their names."""
@@ -30,19 +22,13 @@ class LetterCursor(Cursor):
         begin = self._i
         token = self._peek()
         letter: Letter | None = None
-        if token is None:
-            return None
-        if token.kind == "letter":
+        if token.kind == "letter" or token.is_macro(GREEK):
             self._i += 1
             letter = Letter(token.text)
-        elif token.kind == "macro" and token.text in GREEK:
-            self._i += 1
-            letter = Letter(token.text)
-            after = self._peek()
-            if after is not None and self._may_vary(token, after):
+            if token.kind == "macro" and self._may_vary(token, self._peek()):
                 varied = self._letter()
                 return replace(varied, before=token.text) if varied and not varied.before else letter
-        elif token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS or token.text in STYLES):
+        elif token.is_macro(DECORATIONS):
             self._i += 1
             group = self._group()
             inner = self._letter_in(group)
@@ -50,7 +36,7 @@ class LetterCursor(Cursor):
                 letter = self._dressed(inner, token.text)
             elif token.text in STYLES and len(group) > 1 and all(t.kind == "letter" for t in group):
                 letter = Letter("".join(t.text for t in group), style=STYLES[token.text])
-        elif token.kind == "macro" and token.text in UPRIGHT:
+        elif token.is_macro(UPRIGHT):
             self._i += 1
             group = self._group()
             word = "".join(t.text for t in group if t.text not in "~ ")
@@ -67,13 +53,12 @@ class LetterCursor(Cursor):
         """Return whether a delta before a letter is a sign of variation; before two letters it is a factor."""
         if sign.text not in ("delta", "Delta"):
             return False
-        timed = self._peek(2) is not None and self._found[self._i + 2].text in ("t", "k", "tau") and self._is(")", 3)
+        timed = self._peek(2).text in ("t", "k", "tau") and self._is(")", 3)
         if token.kind == "letter" and self._is("(", 1) and not timed:
             raise Unread("this delta could denote a difference, or be a factor before a bracket", sign.at)
         if token.kind == "letter":
-            behind = self._peek(1)
-            return sign.text == "Delta" or behind is None or behind.kind != "letter"
-        return token.kind == "macro" and any(token.text in names for names in (GREEK, ACCENTS, MARKS, STYLES))
+            return sign.text == "Delta" or self._peek(1).kind != "letter"
+        return token.is_macro(GREEK | DECORATIONS)
 
     def _letter_in(self, part: Sequence[Token]) -> Letter | None:
         """Return the letter that a group consists of; ``None`` if the group contains anything else."""
@@ -104,8 +89,7 @@ class LetterCursor(Cursor):
                     raise Unread("this index is not supported", at)
                 foot = ",".join(filter(None, [letter.foot, in_tex(script)]))
                 letter = replace(letter, index="_".join(filter(None, [letter.index, index])), foot=foot)
-            elif self._is("'"):
-                self._i += 1
+            elif self._accept("'"):
                 letter = replace(letter, marks=(*letter.marks, "prime"))
             elif self._is("^") and (mark := self._marked(letter)):
                 letter = replace(letter, marks=(*letter.marks, mark))
@@ -137,21 +121,19 @@ class LetterCursor(Cursor):
         at = self._found[self._i].at
         rest += [Token("number", "1", at)] if [t.text for t in rest] == ["-"] else []
         end = group_end(self._found, self._i + 1)
-        caret, opening, closing = Token("sign", "^", at), Token("open", "{", at), Token("close", "}", at)
-        apart = [caret, opening, *rest, closing, caret, opening, *sign, closing]
+        caret = Token("sign", "^", at)
+        apart = [caret, *braced(rest, at), caret, *braced(sign, at)]
         self._found = [*self._found[: self._i], *apart, *self._found[end:]]
 
     def _index_first(self) -> None:
         """Move a subscript that is printed after a power before the power."""
         begin, found = self._i, self._found
-        self._i += 1
-        if self._peek() is None:
-            self._i = begin
+        if self._peek(1) is END:
             return
+        self._i += 1
         self._script()
         middle = self._i
-        if self._is("_") and self._peek(1) is not None:
-            self._i += 1
+        if self._peek(1) is not END and self._accept("_"):
             self._script()
             now = self._found
             self._found = [*now[:begin], *now[middle : self._i], *now[begin:middle], *now[self._i :]]
@@ -168,7 +150,7 @@ class LetterCursor(Cursor):
         self._i += 1
         script = self._script()
         word = "".join(t.text for t in script if t.text not in UPRIGHT and t.kind not in ("open", "close"))
-        upright = len(script) > 1 and script[0].kind == "macro" and script[0].text in UPRIGHT - {"mathsf"}
+        upright = len(script) > 1 and script[0].is_macro(UPRIGHT - {"mathsf"})
         if upright:  # and nothing else
             upright = group_end(script, 1) == len(script) or all(t.kind in ("letter", "number") for t in script[1:])
         if len(script) == 1 and script[0].text in "01" and self._may_have_index:
@@ -179,26 +161,18 @@ class LetterCursor(Cursor):
             return "circ"
         if word and set(word.replace("prime", "'")) == {"'"}:
             return "_".join(["prime"] * len(word.replace("prime", "'")))
-        if len(script) == 1 and script[0].kind == "sign" and script[0].text in "+-":
+        if len(script) == 1 and script[0].is_sign("+-"):
             return "plus" if script[0].text == "+" else "minus"
         spelled = len(script) > 2 or (len(script) == 2 and word.isupper() and word[-1] != "T")
         spelled &= word.isalpha() and all(t.kind == "letter" for t in script)
-        if (
-            word in ("max", "min")
-            or (spelled and self._may_have_index)
-            or (upright and word not in ("T", "d") and cleaned(word))
-        ):
+        spelled &= self._may_have_index
+        if word in ("max", "min") or spelled or (upright and word not in ("T", "d") and cleaned(word)):
             return cleaned(word)
         if word.startswith("(") and word.endswith(")") and cleaned(word):
             return f"upper_{cleaned(self._said(script))}"
         number = script[:1] != [] and all(t.kind == "number" or t.text in ("-", "/", "frac", "{", "}") for t in script)
-        if (
-            self._bold
-            and not number
-            and word not in ("times", "wedge")
-            and word not in TRANSPOSED
-            and (said := cleaned(self._said(script)))
-        ):
+        powers = number or word in ("times", "wedge") or word in TRANSPOSED
+        if self._bold and not powers and (said := cleaned(self._said(script))):
             return said  # a vector, or a set, has no powers
         self._i, self._found = begin, found
         return ""
@@ -210,11 +184,11 @@ class LetterCursor(Cursor):
         while i < len(script):
             token = script[i]
             i += 1
-            if token.kind == "macro" and (token.text in ACCENTS or token.text in MARKS):
-                end = group_end(script, i) if i < len(script) and script[i].kind == "open" else i + 1
+            if token.is_macro(DECORATIONS - STYLES.keys()):
+                end = max(i + 1, group_end(script, i))
                 said.append(f" {self._said(script[i:end])} {MARKS.get(token.text, token.text)} ")
                 i = end
-            elif token.kind == "macro" and (token.text in GREEK or token.text in INDICES):
+            elif token.is_macro(GREEK | INDICES):
                 said.append(f" {token.text} ")
             elif token.kind in ("letter", "number"):
                 said.append(token.text)
@@ -224,8 +198,8 @@ class LetterCursor(Cursor):
                 i = end
             elif token.text in ("times", ","):
                 said.append(" by " if token.text == "times" else " ")
-            elif token.kind == "sign" and token.text == "/" and script[i - 2].kind == "number":
+            elif token.is_sign("/") and script[i - 2].kind == "number":
                 said.append(" over ")
-            elif token.kind == "sign" and token.text in _SAID:
+            elif token.is_sign(_SAID):
                 said.append(f" {_SAID[token.text]} ")
         return "".join(said)

@@ -21,7 +21,7 @@ class QuotientCursor(PlaceCursor):
         """
         begin, found = self._i, self._found
         parts: tuple[list[Token], list[Token]] | None = None
-        if token.kind == "macro" and token.text in ("frac", "tfrac", "dfrac"):
+        if token.is_macro(("frac", "tfrac", "dfrac")):
             self._i += 1
             parts = self._group(), self._group()
         elif token.text == "partial" and self._is("_", 1):
@@ -41,8 +41,7 @@ class QuotientCursor(PlaceCursor):
         if by is None:
             raise Unread("a derivative with respect to this index is not supported", sign.at)
         times = 1
-        if self._is("^"):
-            self._i += 1
+        if self._accept("^"):
             digits = "".join(t.text for t in self._script())
             if digits not in ("1", "2", "3", "4"):
                 raise Unread("a derivative of this order is not supported", sign.at)
@@ -65,21 +64,17 @@ class QuotientCursor(PlaceCursor):
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
         """Read a quotient of differentials with a slash, as numerator and denominator; otherwise ``None``."""
-        slash = next((k for k in range(self._i, len(self._found)) if self._found[k].text == "/"), None)
-        if slash is None or any(self._found[k].text in "+-=" for k in range(self._i, slash)):
+        texts = [token.text for token in self._found[self._i :]]
+        above = self._found[self._i :][: texts.index("/") if "/" in texts else 0]
+        if not above or any(token.text in "+-=" for token in above):
             return None
-        below = self._found[slash + 1 : slash + 2]
-        if not below or not is_differential(below[0]):
-            return None
-        above = list(self._found[self._i : slash])
-        self._i = slash + 1
+        self._i += len(above) + 1
         start = self._i
-        if not all(self._variables()):
+        if not is_differential(self._peek()) or not all(self._variables()):
             return None
-        if self._is("^"):
-            self._i += 1
+        if self._accept("^"):
             self._script()
-        return above, list(self._found[start : self._i])
+        return list(above), list(self._found[start : self._i])
 
     def _variables(self) -> Iterator[Letter | None]:
         """Skip all differentials that come next, and yield the letter of each.
@@ -111,10 +106,11 @@ class QuotientCursor(PlaceCursor):
         if by is None or head is None or head[0] != len(by):
             return None
         _, rest, partial = head
-        if not rest and (bar := self._peek()) is not None and bar.text in ("|", "vert", "rvert") and self._is("_", 1):
-            self._i += 2  # where it is taken stands in front of what it is of
+        if not rest and self._is_bar_of_place():  # where it is taken stands in front of what it is of
+            at = self._take().at
+            self._i += 1
             script = self._script()
-            return self._taken(self._derived(above, rest, partial, by), script, bar.at)
+            return self._taken(self._derived(above, rest, partial, by), script, at)
         return self._derived(above, rest, partial, by)
 
     def _derived(self, above: Sequence[Token], rest: list[Token], partial: bool, by: Sequence[Letter]) -> Node:
@@ -147,7 +143,7 @@ class QuotientCursor(PlaceCursor):
 
     def _along(self, what: Node) -> Node:
         """Return the time derivative of an expression; a letter receives one more dot."""
-        if isinstance(what, Sym) and (letter := self._reading.letters.get(what.name)) and (dotted := letter.dotted()):
+        if (letter := self._letter_of(what)) and (dotted := letter.dotted()):
             self._reading.letters.setdefault(dotted.name, dotted)
             return Sym(dotted.name)
         return Call("d", (what,))
@@ -186,8 +182,7 @@ class QuotientCursor(PlaceCursor):
                 raise Unread(
                     "derivatives with respect to a value at a given time are not supported", below[inner._i].at
                 )
-            if inner._is("^"):
-                inner._i += 1
+            if inner._accept("^"):
                 script = inner._script() or [Token("number", "1", below[0].at)]
                 digits = "".join(t.text for t in script if t.kind == "number")
                 if len(script) == 1 and not digits and (raised := cleaned(inner._said(script))):  # an index above
@@ -200,12 +195,10 @@ class QuotientCursor(PlaceCursor):
         return found or None
 
 
-def is_differential(token: Token | None) -> bool:
+def is_differential(token: Token) -> bool:
     """Return whether a token can begin a differential: d, the partial sign, or a macro that sets d upright."""
-    if token is None:
-        return False
     return (token.kind == "letter" and token.text == "d") or (
-        token.kind == "macro" and token.text in ("partial", "mathrm", "d", "dd", "diff", "text", "operatorname", "rm")
+        token.is_macro(("partial", "mathrm", "d", "dd", "diff", "text", "operatorname", "rm"))
     )
 
 

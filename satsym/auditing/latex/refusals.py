@@ -21,7 +21,7 @@ class RefusalCursor(OperatorCursor):
     """Parser that refuses, with its position, any input that the grammar does not read."""
 
     def _is_function(self, token: Token) -> bool:
-        return token.kind == "macro" and token.text in FUNCTIONS and token.text != "d"
+        return token.is_macro(FUNCTIONS) and token.text != "d"
 
     def _continues_argument(self, token: Token, last: Node) -> bool:
         r"""Return whether the argument of a function continues, as in ``2\theta``, ``\omega t``, ``kx``.
@@ -34,7 +34,7 @@ class RefusalCursor(OperatorCursor):
             return False
         if isinstance(last, Num) or last == Sym("pi"):
             return True
-        letter = self._reading.letters.get(last.name) if isinstance(last, Sym) else None
+        letter = self._letter_of(last)
         stem = letter.base if letter is not None else ""
         time = token.text in words.TIMES_OF_ANGLES
         if (time and stem not in words.ANGLES) or (stem in FREQUENCIES and token.text in words.PLACES):
@@ -62,8 +62,8 @@ class RefusalCursor(OperatorCursor):
             if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
                 raise Unread("words inside a formula are not supported", token.at)
         if token.text in ("e", "E") and before.kind == "number" and token.at == before.at + len(before.text):
-            power = self._peek(2) if after is not None and after.text in "+-" else after
-            if power is not None and power.kind == "number" and power.at <= token.at + 2:
+            power = self._peek(2) if after.text in "+-" else after
+            if power.kind == "number" and power.at <= token.at + 2:
                 raise Unread("this notation for a power of ten is not supported; write \\cdot 10^{...}", token.at)
         said = "".join(t.text for t in self._found[self._i : self._i + 4])
         if isinstance(last, Num) and last.value.denominator > 1 and said.startswith(("m/s", "km/s", "rad/", "kg/")):
@@ -71,14 +71,12 @@ class RefusalCursor(OperatorCursor):
         raised = isinstance(last, Pow) or (isinstance(last, Call) and last.function == "power")
         if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
             raise Unread("this could be a unit or a factor after a power of ten; set units upright", token.at)
-        stem = last.base if isinstance(last, Pow) else last
-        stem = last.arguments[0] if isinstance(last, Call) and last.function == "raised" else stem
-        letter = self._reading.letters.get(stem.name) if isinstance(stem, Sym) else None
+        letter = self._letter_of(last, power=True)
         applied = (token.text in FIELDS or token.text in GREEK) and token.at == before.at + 1 and self._is("(", 1)
         if letter is not None and letter.base in OPERATORS and applied:
             raise Unread("this could be an operator that is applied to a function, or a product", token.at)
         if letter is not None and token.text in ("[", "{", "lbrace") and token.kind in ("sign", "macro"):
-            alone = after is not None and after.kind == "letter" and self._is("}", 2, "macro")
+            alone = after.kind == "letter" and self._is("}", 2, "macro")
             alone |= letter.base in (words.TRANSFORMS if token.kind == "macro" else "E")
             if letter.style == "cal" or alone:
                 raise Unread("arguments in brackets of this kind are not supported", token.at)
@@ -94,8 +92,8 @@ class RefusalCursor(OperatorCursor):
 
     def _spelled_function(self, token: Token) -> Node | None:
         """Read a function whose backslash is missing, before a bracket or Greek letter; refuse it elsewhere."""
-        before = self._found[self._i - 2] if self._i > 1 else None
-        alone = before is None or before.kind != "letter" or before.at != token.at - 1
+        before = self._peek(-2)
+        alone = before.kind != "letter" or before.at != token.at - 1
         for word in (*words.SPELLED, *words.CALLED):
             begin = self._i
             if self._spells(word) and word in words.CALLED and not self._is("("):
@@ -104,7 +102,7 @@ class RefusalCursor(OperatorCursor):
                 raise Unread(f"{word} could be one name, \\mathrm{{{word}}}, or a product", token.at)
             elif self._i > begin:
                 after = self._peek()
-                if alone and word in FUNCTIONS and after is not None and (after.text == "(" or after.text in GREEK):
+                if alone and word in FUNCTIONS and (after.text == "(" or after.text in GREEK):
                     return self._function(FUNCTIONS[word], replace(token, kind="macro", text=word))
                 raise Unread(f"{word} has no backslash; write \\{word}, or put spaces between the letters", token.at)
         return None
@@ -133,7 +131,7 @@ class RefusalCursor(OperatorCursor):
     def _refuse_word(self, macro: str, word: str, at: int) -> None:
         """Refuse upright words that are no letters: unknown functions, and plain language."""
         behind = self._peek(1 + len(self._peek_group()) + 2 * (self._is("{", 1, "open")))
-        taken = behind is not None and (self._begins_factor(behind) or behind.text == "^")
+        taken = self._begins_factor(behind) or behind.text == "^"
         places = [t.at for t in self._peek_group() if t.kind == "letter"]
         space = 1 if macro.startswith(("text", "mbox")) else 2  # elsewhere a space has to be set: "\\ "
         parted = any(b > a + space for a, b in pairwise(places)) and word.isalpha()

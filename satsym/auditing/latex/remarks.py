@@ -6,20 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
+from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.tokens import Token, group_end
-from satsym.auditing.latex.words import (
-    CONNECTIVES,
-    OPTIMA,
-    RELATIONS,
-    SAID,
-    SHORT_WORDS,
-    SIGNS,
-    SKIPPED_GROUPS,
-    SPACES,
-    UNITS,
-    UPRIGHT,
-)
+from satsym.auditing.latex.tokens import END, Token, group_at, group_end
+from satsym.auditing.latex.words import CONNECTIVES, OPTIMA, RELATIONS, SAID, SHORT_WORDS, SIGNS, SPACES, UNITS, UPRIGHT
 
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 _LINED = ("boxed", "fbox", "underline", "overline")
@@ -70,6 +60,11 @@ class _Removal:
         if not any(step(token) for step in steps):
             self._sign(token)
 
+    @property
+    def _next(self) -> Token:
+        """The token behind the last one that was read."""
+        return self.found[self.i] if self.i < len(self.found) else END
+
     def _replaced(self, tokens: Sequence[Token], behind: int) -> None:
         """Put tokens in place of the last one and of those up to a position, and read them next."""
         self.found = [*self.found[: self.i - 1], *tokens, *self.found[behind:]]
@@ -77,49 +72,43 @@ class _Removal:
 
     def _look(self, token: Token) -> bool:
         """Read a macro or an empty group that only affects how formulas look; return whether the token is one."""
-        found, i = self.found, self.i
-        if token.kind == "macro" and token.text in _LINED and _is_relation(found, i, token.text == "boxed"):
-            end = group_end(found, i)
-            self._replaced(found[i + 1 : end - 1], end)
-        elif token.kind == "macro" and token.text in UPRIGHT and _is_punctuation(found, i):
+        found, i, first = self.found, self.i, self._next
+        if token.is_macro(_LINED) and _is_relation(found, i, token.text == "boxed"):
+            self._replaced(*group_at(found, i))
+        elif token.is_macro(UPRIGHT) and _is_punctuation(found, i):
             self.kept.append(found[i + 1])
             self.i = group_end(found, i)
-        elif (
-            token.kind == "open"
-            and found[i : i + 1]
-            and found[i].kind == "close"
-            and _stands_empty(self.kept, found[i + 1 :])
-        ):
+        elif token.kind == "open" and first.kind == "close" and _stands_empty(self.kept, found[i + 1 :]):
             self.i += 1
-        elif token.kind == "macro" and token.text == "textcolor" and i < len(found) and found[i].kind == "open":
+        elif token.is_macro("textcolor") and first.kind == "open":
             self.i = group_end(found, i)
-        elif token.kind == "macro" and token.text == "underset" and (under := _underset(found, i)):
+        elif token.is_macro("underset") and (under := _underset(found, i)):
             self._replaced(under, group_end(found, group_end(found, i)))
-        elif token.kind == "macro" and token.text == "mathop" and [t.text for t in found[i : i + 2]] == ["{", "mathrm"]:
+        elif token.is_macro("mathop") and [t.text for t in found[i : i + 2]] == ["{", "mathrm"]:
             end = group_end(found, i)
             self._replaced([replace(token, text="operatorname"), *found[i + 2 : end - 1]], end)
-        elif token.kind == "macro" and token.text == "\\" and (end := _height(found, i)):
+        elif token.is_macro("\\") and (end := _height(found, i)):
             self.kept.append(token)
             self.i = end
-        elif token.kind == "macro" and token.text in _OVER and (relation := _relation_under(found, i)):
+        elif token.is_macro(_OVER) and (relation := _relation_under(found, i)):
             self._replaced([relation], group_end(found, group_end(found, i)))
         else:
-            return token.kind == "macro" and token.text == "ensuremath"
+            return token.is_macro("ensuremath")
         return True
 
     def _spelled(self, token: Token) -> bool:
         """Read what is spelled unusually: a parted sign, a word in letters, a named bracket, a text between lines."""
         found, i, kept = self.found, self.i, self.kept
-        if token.text == "&" and kept and kept[-1].text == ":" and found[i : i + 1] and found[i].text == "=":
+        if token.text == "&" and kept and kept[-1].text == ":" and self._next.text == "=":
             kept[-1] = Token("macro", "coloneq", kept[-1].at)
             self.i += 1
         elif (end := _italic_word(found, i - 1)) and not self.depth and _stands_apart(found, i - 2):
             kept.append(Token("macro", REMARK, token.at))
             self.i = end
-        elif token.kind == "macro" and token.text in _BRACKETS:
+        elif token.is_macro(_BRACKETS):
             kept.append(Token("sign", _BRACKETS[token.text], token.at))
             self.depth += 1 if token.text.startswith("l") else -1
-        elif token.kind == "macro" and token.text in ("intertext", "shortintertext") and i < len(found):
+        elif token.is_macro(("intertext", "shortintertext")) and i < len(found):
             kept.append(replace(token, text="\\"))
             self.i = group_end(found, i)
         else:
@@ -132,28 +121,23 @@ class _Removal:
         if token.kind == "open" and _is_bracket(found, i - 1) and _stands_free(kept):
             end = group_end(found, i - 1)
             self.found = [*found[:i], *found[i : end - 1], *found[end:]]
-        elif (
-            token.kind == "open"
-            and i + 1 < len(found)
-            and found[i].text in SIGNS
-            and found[i + 1].kind == "close"
-            and not (kept and kept[-1].text in "^_")
-        ):
-            kept.append(found[i])
-            self.i += 2
-        else:
-            return False
-        return True
+            return True
+        inside, end = group_at(found, i - 1)
+        sign = token.kind == "open" and len(inside) == 1 and inside[0].text in SIGNS and not _is_script(kept)
+        if sign:
+            kept.append(inside[0])
+            self.i = end
+        return sign
 
     def _skipped(self, token: Token) -> bool:
         """Read a macro whose argument is skipped, or the size of a bracket."""
         found, i = self.found, self.i
-        if token.kind == "macro" and token.text in SKIPPED_GROUPS:
+        if token.is_macro(words.SKIPPED_GROUPS):
             if token.text == "hspace" and not _is_narrow(found, i):  # parts equations, as a wide space does
                 self.kept.append(replace(token, text="quad"))
-            i += 1 if i < len(found) and found[i].text == "*" else 0
-            self.i = group_end(found, i) if i < len(found) and found[i].kind == "open" else i
-        elif token.kind == "macro" and token.text in ("left", "right", "middle") and i < len(found):
+            i += self._next.text == "*"
+            self.i = group_end(found, i) if found[i : i + 1] and found[i].kind == "open" else i
+        elif token.is_macro(("left", "right", "middle")) and i < len(found):
             if found[i].text == ".":  # no bracket on this side
                 bar = _bar_of(found, i)
                 if bar:  # all between them is evaluated at a point
@@ -182,15 +166,15 @@ class _Removal:
     def _words(self, token: Token) -> bool:
         """Read words between formulas, or a sign that stands for such words."""
         found, i, kept = self.found, self.i, self.kept
-        if token.kind == "macro" and token.text in UPRIGHT and _has_formula(found, i, kept):
+        if token.is_macro(UPRIGHT) and _has_formula(found, i, kept):
             self._replaced(_apart(found, i), group_end(found, i))
-        elif token.kind == "macro" and token.text in UPRIGHT and _is_spoken(found, i, self.depth, kept):
+        elif token.is_macro(UPRIGHT) and _is_spoken(found, i, self.depth, kept):
             self.i = group_end(found, i)
             if self.depth and self.i < len(found) and found[self.i].text == ")":  # the bracket is one of the words
                 kept.pop()
                 self.i, self.depth = self.i + 1, self.depth - 1
             kept.append(replace(token, text=REMARK))
-        elif token.kind == "macro" and token.text in CONNECTIVES and not self.depth:
+        elif token.is_macro(CONNECTIVES) and not self.depth:
             if any(t.kind in ("letter", "number") for t in found[i:]):  # else nothing follows it
                 kept.append(replace(token, text=REMARK))
             self.i = _behind_variable(found, i) if token.text == "forall" else i
@@ -203,7 +187,7 @@ class _Removal:
         kept = self.kept
         if kept and kept[-1].at == token.at - 1 and (joined := _joined(kept, token)):
             kept[-1] = Token("macro", joined, kept[-1].at)
-        elif token.kind == "macro" and token.text == "_":
+        elif token.is_macro("_"):
             kept.append(Token("sign", "_", token.at))  # as it is escaped in Markdown
         else:
             self.depth += (token.text in "([") - (token.text in ")]") if token.kind == "sign" else 0
@@ -245,8 +229,8 @@ def _joined(kept: Sequence[Token], token: Token) -> str:
         depth += (before.kind == "close") - (before.kind == "open")
         if depth < 0 or (depth == 0 and (before.text in ("=", "&", "+", "-") or before.text in RELATIONS)):
             break
-        bars += depth == 0 and before.kind == "sign" and before.text == "|"
-        norms += depth == 0 and before.kind == "macro" and before.text == "|"
+        bars += depth == 0 and before.is_sign("|")
+        norms += depth == 0 and before.is_macro("|")
     closes = bars % 2 == 0 and norms % 2 == 0 and [t.text for t in kept[-2:-1]] != ["|"]
     return "" if closes else joined
 
@@ -254,7 +238,7 @@ def _joined(kept: Sequence[Token], token: Token) -> str:
 def _relation_under(found: Sequence[Token], i: int) -> Token | None:
     """Return the relation sign that is printed with a text above or below it; ``None`` for other symbols."""
     end = group_end(found, i)
-    inside = found[end + 1 : group_end(found, end) - 1] if end < len(found) else []
+    inside, _ = group_at(found, end)
     is_sign = len(inside) == 1 and (inside[0].text in RELATIONS or inside[0].text in ("=", "equiv"))
     return inside[0] if is_sign and found[i].kind == found[end].kind == "open" else None
 
@@ -292,7 +276,12 @@ def _is_punctuation(found: Sequence[Token], i: int) -> bool:
 def _stands_empty(kept: Sequence[Token], behind: Sequence[Token]) -> bool:
     """Return whether an empty group only affects the space before the next sign."""
     free = not kept or kept[-1].text in ("&", "\\") or (kept[-1].kind == "sign" and kept[-1].text not in "^_")
-    return free and bool(behind) and behind[0].kind == "sign" and behind[0].text in "+-="
+    return free and bool(behind) and behind[0].is_sign("+-=")
+
+
+def _is_script(kept: Sequence[Token]) -> bool:
+    """Return whether the next token is a subscript or superscript."""
+    return bool(kept) and kept[-1].is_sign("^_")
 
 
 def _is_bracket(found: Sequence[Token], i: int) -> bool:
@@ -311,7 +300,7 @@ def _stands_free(kept: Sequence[Token]) -> bool:
     """Return whether the next group is neither an argument nor a subscript or superscript."""
     if not kept or kept[-1].text in GREEK:
         return True
-    return kept[-1].kind not in ("macro", "close", "begin") and kept[-1].text not in "^_"
+    return kept[-1].kind not in ("macro", "close", "begin") and not _is_script(kept)
 
 
 def _is_narrow(found: Sequence[Token], i: int) -> bool:
@@ -370,7 +359,7 @@ def _apart(found: Sequence[Token], i: int) -> list[Token]:
 def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
     """Return whether the group at a position is plain language, either outside brackets or alone within one."""
     index = any(token.text in "^_" for token in kept[-2:-1] if kept[-1].kind == "open")
-    index |= bool(kept) and kept[-1].kind == "sign" and kept[-1].text in "^_"
+    index |= bool(kept) and kept[-1].is_sign("^_")
     if index or i >= len(found) or found[i].kind != "open":
         return False
     end = group_end(found, i)

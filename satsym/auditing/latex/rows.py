@@ -4,22 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
+from satsym.auditing.latex import words
 from satsym.auditing.latex.remarks import REMARK
-from satsym.auditing.latex.tokens import Token, Unread, group_end
-from satsym.auditing.latex.words import (
-    CLOSING,
-    COUNTERS,
-    ELLIPSES,
-    EQUALS,
-    OPENING,
-    OPTIMA,
-    RELATIONS,
-    SYSTEMS,
-    TIMES,
-    UPRIGHT,
-)
+from satsym.auditing.latex.tokens import END, Token, Unread, end_of, environment, group_end
+from satsym.auditing.latex.words import CLOSING, COUNTERS, ELLIPSES, OPENING, OPTIMA, RELATIONS, SYSTEMS, TIMES, UPRIGHT
 
 
 @dataclass
@@ -47,14 +37,11 @@ def lines(found: Sequence[Token]) -> list[Line]:
                 del line.sides[0], line.signs[0]
             if done and place in begun:
                 before = done[-1]
-            first = line.sides[0][0] if line.sides[0] else None
-            signed = first is not None and first.kind == "sign" and first.text in "+-"
+            signed = bool(line.sides[0]) and line.sides[0][0].is_sign("+-")
             if before is None and not line.sides[0]:
                 raise Unread("an expression is missing before this sign", piece[0].at)
-            if before is not None and not line.sides[0]:  # a line that begins with a sign of relation
-                before.sides += line.sides[1:]
-                before.signs += line.signs
-            elif before is not None and signed and (line.bare or before.bare or line.sides[0][0].text == "+"):
+            goes_on = signed and before is not None and (line.bare or before.bare or line.sides[0][0].text == "+")
+            if before is not None and (goes_on or not line.sides[0]):  # a line that begins with a sign
                 before.sides[-1] += line.sides[0]
                 before.sides += line.sides[1:]
                 before.signs += line.signs
@@ -121,14 +108,14 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
         if token.kind == "end" and systems and systems.pop():
             continue
         inside = not all(systems)
-        if token.kind == "macro" and token.text in ("\\", "cr") and not inside:
+        if token.is_macro(("\\", "cr")) and not inside:
             if depth <= 0 and not _goes_on(rows[-1]):  # else a bracket or a sum goes on in the next line
                 line += 1
                 rows.append([])
             elif depth <= 0:
                 i += _repeats(found, i, rows[-1])
             broken = depth > 0
-        elif token.kind == "sign" and token.text == "&" and not inside:
+        elif token.is_sign("&") and not inside:
             if not systems:
                 raise Unread('there is an "&" outside aligned lines', token.at)
             if depth <= 0 and not _goes_on(rows[-1]) and not _asks(rows[-1]):
@@ -139,7 +126,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 if not empty and (not _has_relation(rows[-1]) or _goes_on(rows[-1])):
                     raise Unread("words inside a formula are not supported", token.at)
                 rows.append([])
-        elif token.kind == "macro" and token.text in ("quad", "qquad", " "):
+        elif token.is_macro(("quad", "qquad", " ")):
             if not inside and bracket:
                 if broken or (i < len(found) and found[i].text == "+"):
                     continue
@@ -150,8 +137,8 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                 rows.append([])
         else:
             broken = False
-            depth += (token.kind == "open" or token.text in "([") - (token.kind == "close" or token.text in ")]")
-            bracket = max(0, bracket + (token.text in "([") - (token.text in ")]")) if token.kind == "sign" else bracket
+            depth += token.nesting if token.kind not in ("begin", "end") else 0
+            bracket = max(0, bracket + token.nesting) if token.kind == "sign" else bracket
             rows[-1].append(token)
         places += [line] * (len(rows) - len(places))
     for k, gap in gaps:
@@ -189,9 +176,9 @@ def _goes_on(row: Sequence[Token]) -> bool:
     if last is None:
         return False
     index = len(row) > 1 and row[-2].text in ("^", "_")
-    if not index and ((last.kind == "sign" and last.text in "+-") or _sign(last)):
+    if not index and (last.is_sign("+-") or _sign(last)):
         return True
-    k = max((k for k, token in enumerate(row) if token.kind == "macro" and token.text in ("sum", "int")), default=-1)
+    k = max((k for k, token in enumerate(row) if token.is_macro(("sum", "int"))), default=-1)
     end = k + 1
     while 0 < end < len(row) and row[end].text in ("_", "^"):
         end = group_end(row, end + 1) if end + 1 < len(row) and row[end + 1].kind == "open" else end + 2
@@ -201,7 +188,7 @@ def _goes_on(row: Sequence[Token]) -> bool:
 def _asks(row: Sequence[Token]) -> bool:
     """Return whether a line ends with the variables of an optimisation whose cost follows after a space."""
     for k in range(len(row) - 1, -1, -1):
-        if row[k].kind == "macro" and row[k].text in (*OPTIMA, "lim"):
+        if row[k].is_macro((*OPTIMA, "lim")):
             end = group_end(row, k + 2) if k + 2 < len(row) and row[k + 2].kind == "open" else k + 3
             return end >= len(row)
     return False
@@ -210,21 +197,17 @@ def _asks(row: Sequence[Token]) -> bool:
 def _equations(row: Sequence[Token]) -> list[list[Token]]:
     """Return the relations that stand side by side in a line with aligned columns."""
     pieces: list[list[Token]] = [[]]
-    cells = split(row, lambda token: token.kind == "sign" and token.text == "&")
+    cells = split(row, lambda token: token.is_sign("&"))
     for cell, after in zip(cells, [*cells[1:], []], strict=True):
-        before, first = pieces[-1], cell[0] if cell else None
-        begun = first is None or bool(_sign(first)) or first.text in TIMES | {"+", "-", ","}
+        before, first = pieces[-1], cell[0] if cell else END
+        related = first is END or bool(_sign(first))
         complete = _has_relation(before) and not _sign(before[-1])
-        if (
-            complete
-            and not (first is None or _sign(first))
-            and (_has_relation(cell) or _is_remark(cell) or (after and _sign(after[0])))
-        ):
+        follows = _has_relation(cell) or _is_remark(cell) or bool(after and _sign(after[0]))
+        if complete and not related and follows:
             pieces.append(list(cell))
-        elif begun or not before or _sign(before[-1]):
+        elif related or first.text in TIMES | {"+", "-", ","} or not before or _sign(before[-1]):
             pieces[-1] += cell
         else:
-            assert first is not None
             raise Unread("the entry in this column is not part of an equation", first.at)
     return pieces
 
@@ -235,22 +218,17 @@ def _is_system(found: Sequence[Token], i: int, name: str, before: Sequence[Token
         return not name.endswith("cases") or _is_brace([t for t in before if t.text not in ("&", ".")])
     if name != "array":
         return False
-    depth = 0
-    for token in found[i:]:
-        depth += (token.kind == "begin") - (token.kind == "end")
-        if depth < 0:
-            return False
-        if depth == 0 and token.kind == "sign" and token.text == "=":
-            return True
-    return False
+    inside = found[i - 1 : end_of(found, i - 1, environment)]
+    depths = accumulate(map(environment, inside))
+    return any(depth == 1 and token.is_sign("=") for token, depth in zip(inside, depths, strict=True))
 
 
 def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     """Return the relations that are separated by commas, without full stops; lists are not divided."""
     parts = [
         piece
-        for part in split(found, lambda token: token.kind == "sign" and token.text in ",;")
-        for listed in split(_unbracketed(part), lambda token: token.kind == "sign" and token.text in ",;")
+        for part in split(found, lambda token: token.is_sign(",;"))
+        for listed in split(_unbracketed(part), lambda token: token.is_sign(",;"))
         for piece in ([listed[:1], listed[1:]] if _lacks_comma(listed) else [listed])
     ]
     parts = [piece for part in parts for piece in _before_condition(part)]
@@ -265,21 +243,20 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
         return kept
     done: list[list[Token]] = []
     pending: list[Token] = []
+    misplaced = False
     for place, part in enumerate(kept):
         if _has_relation(part):
-            first = next(name for token in part if (name := _sign(token)))
-            if pending and first == "=":
-                raise Unread("a comma is not allowed here", _between(found, kept))
+            misplaced |= bool(pending) and next(filter(None, map(_sign, part))) == "="
             done.append([*pending, *part])
             pending = []
         elif done and _goes_on_as_list(done[-1], kept[place:]):
             done[-1] += [Token("sign", ",", part[0].at), *part]
-        elif done and _is_remark(part):
-            continue
-        elif any(_has_relation(later) for later in kept[place:]):
+        elif not (done and _is_remark(part)):
+            misplaced |= not any(_has_relation(later) for later in kept[place:])
             pending += [*part, Token("sign", ",", part[-1].at)]
-        else:
-            raise Unread("a comma is not allowed here", _between(found, kept))
+    if misplaced:
+        comma = (t.at for t in found if t.text in ",;" and t.at > kept[0][-1].at)
+        raise Unread("a comma is not allowed here", next(comma, found[0].at))
     return done
 
 
@@ -304,7 +281,7 @@ def _at_colons(found: Sequence[Token]) -> list[Token]:
     """Return the tokens with colons between relations replaced by semicolons."""
     part = list(found)
     for k in range(1, len(part) - 1):
-        colon = part[k].kind == "sign" and part[k].text == ":" and not _sign(part[k - 1]) and not _sign(part[k + 1])
+        colon = part[k].is_sign(":") and not _sign(part[k - 1]) and not _sign(part[k + 1])
         if colon and _has_relation(part[:k]) and _has_relation(part[k:]):
             part[k] = Token("sign", ";", part[k].at)
     return part
@@ -327,13 +304,9 @@ def _goes_on_as_list(relation: Sequence[Token], later: Sequence[Sequence[Token]]
         if _has_relation(part):
             break
         rest.append(part)
-    if any(token.kind == "macro" and token.text in ELLIPSES for part in rest for token in part):
+    if any(token.is_macro(ELLIPSES) for part in rest for token in part):
         return True
     return relation[-1].text in ELLIPSES or all(len(part) == 1 and part[0].kind == "number" for part in rest)
-
-
-def _between(found: Sequence[Token], kept: Sequence[Sequence[Token]]) -> int:
-    return next((t.at for t in found if t.text in ",;" and t.at > kept[0][-1].at), found[0].at)
 
 
 def _is_remark(part: Sequence[Token]) -> bool:
@@ -342,7 +315,7 @@ def _is_remark(part: Sequence[Token]) -> bool:
 
 
 def _without_stop(part: list[Token]) -> list[Token]:
-    while part and part[-1].kind == "sign" and part[-1].text in ".,;:":
+    while part and part[-1].is_sign(".,;:"):
         part = part[:-1]
     return part
 
@@ -353,7 +326,7 @@ def _has_relation(part: Sequence[Token]) -> bool:
 
 def _sign(token: Token) -> str:
     """Return the relation that a token denotes; empty if the token is no relation sign."""
-    if (token.kind == "sign" and token.text == "=") or (token.kind == "macro" and token.text in EQUALS):
+    if token.is_sign("=") or token.is_macro(words.EQUALS):
         return "="
     return RELATIONS.get(token.text, "") if token.kind in ("macro", "sign") else ""
 
@@ -383,13 +356,10 @@ def split(found: Sequence[Token], divides: Callable[[Token], bool]) -> list[list
     """Return the tokens between dividing tokens, which are recognised outside of brackets and environments only."""
     parts: list[list[Token]] = [[]]
     depth = 0
-    closing = max((k for k, token in enumerate(found) if token.kind == "macro" and token.text in CLOSING), default=-1)
+    closing = max((k for k, token in enumerate(found) if token.is_macro(CLOSING)), default=-1)
     for k, token in enumerate(found):
-        brace = k <= closing and token.kind == "macro"
-        depth += token.kind in ("open", "begin") or (token.kind == "sign" and token.text in "([")
-        depth += brace and token.text in OPENING
-        depth -= token.kind in ("close", "end") or (token.kind == "sign" and token.text in ")]")
-        depth -= brace and token.text in CLOSING
+        depth += token.nesting
+        depth += token.is_macro(OPENING) - token.is_macro(CLOSING) if k <= closing else 0
         if depth == 0 and divides(token):
             parts.append([])
         else:

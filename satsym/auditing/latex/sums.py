@@ -9,7 +9,7 @@ from satsym.auditing.latex.cursor import listed
 from satsym.auditing.latex.enclosed import EnclosedCursor
 from satsym.auditing.latex.operators import shows_transposition
 from satsym.auditing.latex.quotients import is_differential
-from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.tokens import END, Token, Unread, group_end
 from satsym.formula.tree import Add, Call, Mul, Neg, Node, Num, Sym, children, symbols
 
 _RELATED = frozenset(words.RELATIONS.values())
@@ -66,18 +66,15 @@ class SumCursor(EnclosedCursor):
         limits = self._limits()
         self._put_differential_last()
         begin, depth = self._i, 0
-        while (now := self._peek()) is not None:
-            depth += (now.kind in ("open", "begin") or now.text in "([") - (
-                now.kind in ("close", "end") or now.text in ")]"
-            )
+        while (now := self._peek()) is not END:
+            depth += now.nesting
             if depth < 0:
                 break
             here = self._i
             if depth == 0 and here > begin and is_differential(now):
                 volume = self._volume()
                 letters = list(self._variables()) if volume is None else []
-                behind = self._peek()
-                ends = behind is None or behind.text in ("+", "-", ")", "]")
+                ends = self._peek() is END or self._peek().is_sign("+-)]")
                 if ends and (volume or (all(letters) and len(letters) in (1, words.INTEGRALS[token.text]))):
                     along = self._found[here - 1].text == "cdot"
                     tree = self._inner(self._found[begin : here - along], token.at)
@@ -93,8 +90,7 @@ class SumCursor(EnclosedCursor):
         """Read an element of volume such as ``d^3 x``; ``None``, with nothing read, if there is none."""
         begin = self._i
         self._i += 1
-        if self._is("^"):
-            self._i += 1
+        if self._accept("^"):
             order = self._script()
             letter = self._letter()
             if letter is not None and len(order) == 1 and order[0].text in "23":
@@ -111,24 +107,22 @@ class SumCursor(EnclosedCursor):
             found = [*found[:i], *found[i + 1 : end - 1], *found[end:]]
         depth = length = 0
         for token in found[i:]:
-            depth += (token.kind in ("open", "begin") or token.text in "([") - (
-                token.kind in ("close", "end") or token.text in ")]"
-            )
-            if depth < 0 or (depth == 0 and token.kind == "sign" and token.text in "+-"):
+            depth += token.nesting
+            if depth < 0 or (depth == 0 and token.is_sign("+-")):
                 break
             length += 1
         alone = i + length == len(found) or found[i + length].text in ")]"
         first = self._of(found[i:])
-        if is_differential(found[i] if i < len(found) else None) and alone and all(list(first._variables())):
+        if is_differential(first._peek()) and alone and all(list(first._variables())):
             found = [*found[:i], *found[i + first._i : i + length], *found[i : i + first._i], *found[i + length :]]
         depth = 0
         for k in range(i, i + length):
-            depth += (found[k].kind in ("open", "begin")) - (found[k].kind in ("close", "end"))
+            depth += found[k].group
             if depth or found[k].text not in ("frac", "dfrac", "tfrac") or found[k + 1].kind != "open":
                 continue
             behind = group_end(found, k + 1)
             above = found[k + 2 : behind - 1]
-            below = found[behind + 1] if behind + 1 < len(found) else None
+            below = found[behind + 1] if behind + 1 < len(found) else END
             for j in [j for j, token in enumerate(above) if is_differential(token) and not is_differential(below)][:1]:
                 inner = self._of(above)
                 inner._i = j
@@ -143,11 +137,7 @@ class SumCursor(EnclosedCursor):
     def _additive(self) -> str:
         """Return the additive sign that comes next; empty if there is none."""
         token = self._peek()
-        signed = token is not None and (
-            (token.kind == "sign" and token.text in "+-")
-            or (token.kind == "macro" and token.text in words.DOUBLE_SIGNS)
-        )
-        return token.text if token is not None and signed else ""
+        return token.text if token.is_sign("+-") or token.is_macro(words.DOUBLE_SIGNS) else ""
 
     def _free(self, term: Node) -> set[str]:
         """Return the letters and indices of a term, except the indices of sums within the term."""

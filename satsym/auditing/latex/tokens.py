@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from satsym.auditing.latex.letters import Letter, of_word
@@ -39,6 +40,28 @@ class Token:
     kind: str
     text: str
     at: int
+
+    def is_macro(self, names: str | Container[str]) -> bool:
+        """Return whether the token is the macro of this name, or one of several macros."""
+        return self.kind == "macro" and (self.text == names if isinstance(names, str) else self.text in names)
+
+    def is_sign(self, signs: Container[str]) -> bool:
+        """Return whether the token is one of some signs."""
+        return self.kind == "sign" and self.text in signs
+
+    @property
+    def group(self) -> int:
+        """1 if the token opens a group or an environment, -1 if it closes one, otherwise 0."""
+        return (self.kind in ("open", "begin")) - (self.kind in ("close", "end"))
+
+    @property
+    def nesting(self) -> int:
+        """1 if the token opens a group, an environment or a bracket, -1 if it closes one, otherwise 0."""
+        return self.group + self.is_sign("([") - self.is_sign(")]")
+
+
+END = Token("nothing", "\0", sys.maxsize)
+"""Token that stands for the end of a formula."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +134,7 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
     found = expanded(_pieces(text, start), macros or {})
     depth = 0
     for token in found:
-        depth += (token.kind in ("open", "begin")) - (token.kind in ("close", "end"))
+        depth += token.group
         if depth > MAX_DEPTH or depth < 0:
             why = (
                 f"braces are nested more than {MAX_DEPTH} levels deep"
@@ -168,13 +191,34 @@ def expanded(found: Sequence[Token], macros: Macros, depth: int = 0) -> list[Tok
 
 
 def group_end(found: Sequence[Token], i: int) -> int:
-    """Return the position after the group that begins at a position; the number of tokens if it is not closed."""
+    """Return the position after the group or token at a position; the number of tokens if a group is not closed."""
+    return end_of(found, i, lambda token: (token.kind == "open") - (token.kind == "close"))
+
+
+def end_of(found: Sequence[Token], i: int, nesting: Callable[[Token], int]) -> int:
+    """Return the position after the part at a position; `nesting` tells by how much a token changes the depth."""
     depth = 0
     for k in range(i, len(found)):
-        depth += (found[k].kind == "open") - (found[k].kind == "close")
+        depth += nesting(found[k])
         if depth == 0:
             return k + 1
     return len(found)
+
+
+def environment(token: Token) -> int:
+    """Return 1 if a token begins an environment, -1 if it ends one, otherwise 0."""
+    return (token.kind == "begin") - (token.kind == "end")
+
+
+def group_at(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
+    """Return the contents of the group at a position, or the token there, and the position after it."""
+    end = group_end(found, i)
+    return list(found[i + 1 : end - 1] if i < len(found) and found[i].kind == "open" else found[i:end]), end
+
+
+def braced(inside: Sequence[Token], at: int) -> list[Token]:
+    """Return tokens in braces."""
+    return [Token("open", "{", at), *inside, Token("close", "}", at)]
 
 
 def in_tex(part: Sequence[Token]) -> str:
@@ -195,10 +239,7 @@ def has_bold(part: Sequence[Token]) -> bool:
 def _argument(found: Sequence[Token], i: int, macro: Token) -> tuple[list[Token], int]:
     if i >= len(found):
         raise Unread(f"\\{printable(macro.text)} has too few arguments", macro.at)
-    if found[i].kind != "open":
-        return [found[i]], i + 1
-    end = group_end(found, i)
-    return list(found[i + 1 : end - 1]), end
+    return group_at(found, i)
 
 
 def _optional(found: Sequence[Token], i: int, default: Sequence[Token]) -> tuple[Sequence[Token], int]:
@@ -217,7 +258,7 @@ def _filled(macro: Macro, arguments: Sequence[Sequence[Token]], at: int) -> list
     body = macro.body
     for k, token in enumerate(body):
         before = body[k - 1] if k else None
-        if before is not None and before.kind == "sign" and before.text == "#" and token.kind == "number":
+        if before is not None and before.is_sign("#") and token.kind == "number":
             filled.pop()
             place = int(token.text[0]) - 1
             if place < len(arguments):
@@ -358,7 +399,7 @@ def _exponents_grouped(found: list[Token]) -> list[Token]:
         bracketed = first == i + 1 and found[first].text == "("
         if first > i + 1 or bracketed:
             inside = found[first + 1 : last - 1] if bracketed else found[i + 1 : last]
-            found[i + 1 : last] = [Token("open", "{", found[i].at), *inside, Token("close", "}", found[i].at)]
+            found[i + 1 : last] = braced(inside, found[i].at)
     return found
 
 

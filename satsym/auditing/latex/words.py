@@ -29,6 +29,7 @@ STYLES = dict.fromkeys(
     "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
+DECORATIONS = frozenset((*ACCENTS, *MARKS, *STYLES))
 UPRIGHT = frozenset(
     "mathrm texttt textsl text textrm operatorname mathit textit mathsf mbox mathup textnormal textsf".split()
 )
@@ -118,6 +119,8 @@ SYSTEMS = frozenset(
 OPENING = frozenset(("{", "lbrace", "lbrack", "langle"))
 CLOSING = frozenset(("}", "rbrace", "rbrack", "rangle"))
 """Opening and closing brackets that are macros."""
+BARS = frozenset(("lvert", "lVert", "|", "vert", "Vert"))
+"""Vertical bars that are macros and may open."""
 STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf"))
 NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from satsym.auditing.latex.letters import GREEK
-from satsym.auditing.latex.words import COUNTERS
+from satsym.auditing.latex.words import BETWEEN, COUNTERS, DOUBLE_SIGNS, OF_SETS, OPTIMA, RELATIONS
 from satsym.formula.tree import (
     Add,
     Call,
@@ -25,6 +25,7 @@ from satsym.formula.tree import (
     cells,
     constant,
     each,
+    lines,
     substituted,
     symbols,
 )
@@ -35,33 +36,63 @@ _SUM, _PRODUCT, _ATOM = range(3)
 _NAMES = {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
 _WORDS = {"pi": r"\pi", "constant": r"\text{const}", "infinity": r"\infty", "ellipsis": r"\ldots"}
 _WORDS |= {"otherwise": r"\text{otherwise}", "nabla": r"\nabla", "star": "*", "dagger": r"\dagger"}
-_DOUBLE_SIGNS = {"either_sign": r"\pm", "other_sign": r"\mp"}
-_FIELDS = {"divergence": r"\nabla \cdot ", "curl": r"\nabla \times ", "laplacian": r"\nabla^2 "}
-_SIGNS = {"less": "<", "greater": ">", "at_most": r"\le", "at_least": r"\ge", "unequal": r"\ne", "near": r"\approx"}
-_SIGNS |= {"tends": r"\to", "subset": r"\subset", "precedes": r"\prec", "follows": r"\succ", "much_less": r"\ll"}
-_SIGNS |= {"much_greater": r"\gg", "similar": r"\sim", "proportional": r"\propto", "element": r"\in", "equal": "="}
-_SIGNS |= {"not_element": r"\notin", "assigned": r"\leftarrow", "subset_or_same": r"\subseteq"}
-_SIGNS |= {"precedes_or_same": r"\preceq", "follows_or_same": r"\succeq"}
-_OPTIMA = {"minimum": r"\min", "maximum": r"\max", "argmin": r"\arg\min", "argmax": r"\arg\max"}
-_OPTIMA |= {"infimum": r"\inf", "supremum": r"\sup"}
-_ENCLOSED = {"sqrt": (r"\sqrt{", "}"), "exp": ("e^{", "}"), "abs": ("|", "|"), "norm": (r"\|", r"\|"), "list": ("", "")}
-_ENCLOSED |= {"d": (r"\frac{d}{dt}\left(", r"\right)"), "skew": (r"\left[", r"\right]_{\times}")}
-_ENCLOSED |= {
-    "closed_open": (r"\left[", r"\right)"),
-    "open_closed": (r"\left(", r"\right]"),
-    "boundary": (r"\partial ", ""),
+
+
+def _macros(names: Mapping[str, str]) -> dict[str, str]:
+    """Return function -> macro for a table of macros, of which the first one for each function is written."""
+    return {name: rf"\{macro}" if macro.isalpha() else macro for macro, name in reversed(list(names.items()))}
+
+
+_SIGNS = {**_macros(RELATIONS), "equal": "="}
+_OPTIMA = {**_macros(OPTIMA), "argmin": r"\arg\min", "argmax": r"\arg\max"}
+_DOUBLE_SIGNS = _macros(DOUBLE_SIGNS)
+_BETWEEN = {**_macros(BETWEEN), **_macros(OF_SETS), "cross": r"\times", "times": r"\times", "dot": r"\cdot"}
+_ATOMS = {
+    "sqrt": r"\sqrt{<all>}",
+    "exp": "e^{<all>}",
+    "abs": "|<all>|",
+    "norm": r"\|<all>\|",
+    "list": "<all>",
+    "d": r"\frac{d}{dt}\left(<all>\right)",
+    "skew": r"\left[<all>\right]_{\times}",
+    "closed_open": r"\left[<all>\right)",
+    "open_closed": r"\left(<all>\right]",
+    "open_interval": r"\left(<all>\right)",
+    "bracket": r"\left[<all>\right]",
+    "boundary": r"\partial <all>",
+    "braces": r"\left\{<all>\right\}",
+    "angled": r"\langle <all> \rangle",
+    "differential": "d<1>",
+    "transpose": r"<1:atom>^{\mathsf T}",
+    "diff": r"\frac{\partial <1:product>}{\partial <2>}",
+    "variational": r"\frac{\delta <1>}{\delta <2>}",
+    "between": r"<1:atom>\Big|_{<2>}^{<3>}",
+    "volume": "^{<2>} <1>",
+    "order": r"\mathcal{O}\left(<1>\right)",
+    "indexed": r"\left(<1>\right)_{<2>}",
+    "transform": r"<1>\left\{<2>\right\}",
+    "binomial": r"\binom{<1>}{<2>}",
+    "over": r"\<2>{<1>}",
+    "indexed_norm": r"\|<1>\|_{<2>}",
+    "factorial": "<1:atom>!",
 }
-_ENCLOSED |= {"open_interval": (r"\left(", r"\right)")}
-_ENCLOSED |= {"braces": (r"\left\{", r"\right\}"), "angled": (r"\langle ", r" \rangle")}
-_BETWEEN = {
-    "cross": r" \times ",
-    "times": r" \times ",
-    "dot": r" \cdot ",
-    "tensor": r" \otimes ",
-    "composed": r" \circ ",
-    "wedge": r" \wedge ",
+_PRODUCTS = {
+    "divergence": r"\nabla \cdot <1:atom>",
+    "curl": r"\nabla \times <1:atom>",
+    "laplacian": r"\nabla^2 <1:atom>",
 }
-_BETWEEN |= {"union": r" \cup ", "intersection": r" \cap ", "without": r" \setminus "}
+_SUMS = {
+    **{name: f"<1> {sign} <others>" for name, sign in _SIGNS.items()},
+    **{name: f"{sign} <1:product>" for name, sign in _DOUBLE_SIGNS.items()},
+    "limit": r"\lim_{<2> \to <3>} <1:product>",
+    "given": r"<1> \mid <others>",
+    "maps": r"<1> : <2> \to <3>",
+}
+_FORMS = {
+    name: (form, binding) for binding, forms in enumerate((_SUMS, _PRODUCTS, _ATOMS)) for name, form in forms.items()
+}
+"""Function -> how it is written, and its precedence; an argument may be put in brackets as an atom or a product."""
+_GAP = re.compile("<(?:(all|others)|([123])(?::(atom|product))?)>")
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
 _RUNS_ON = re.compile(
@@ -147,29 +178,20 @@ class _Tex:
     def _grid(self, node: Grid) -> str:
         if not any(isinstance(entry, Grid) for entry in node.entries):
             return rf"\left[{self._listed(node.entries)}\right]"
-        rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in node.entries]
-        body = r" \\ ".join(" & ".join(map(self._whole, row)) for row in rows)
+        body = r" \\ ".join(" & ".join(map(self._whole, row)) for row in lines(node))
         return rf"\begin{{pmatrix}} {body} \end{{pmatrix}}"
 
     def _call(self, node: Call) -> tuple[str, int]:
         name, arguments = node.function, node.arguments
-        if name in _ENCLOSED:
-            before, behind = _ENCLOSED[name]
-            return f"{before}{self._listed(arguments)}{behind}", _ATOM
-        if name in _SIGNS:
-            return f"{self._whole(arguments[0])} {_SIGNS[name]} {self._listed(arguments[1:])}", _SUM
+        if name in _FORMS:
+            form, binding = _FORMS[name]
+            return _GAP.sub(lambda gap: self._argument(gap, arguments), form), binding
         if name in _OPTIMA:
             below = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
             return rf"{_OPTIMA[name]}{below} \left({self._whole(arguments[0])}\right)", _SUM
         if name in _BETWEEN:
-            said = _BETWEEN[name].join(self._bound(argument, _ATOM) for argument in arguments)
+            said = f" {_BETWEEN[name]} ".join(self._bound(argument, _ATOM) for argument in arguments)
             return (rf"\left({said}\right)", _ATOM) if arguments[-1] == Sym("nabla") else (said, _PRODUCT)
-        if name in _DOUBLE_SIGNS:
-            return f"{_DOUBLE_SIGNS[name]} {self._bound(arguments[0], _PRODUCT)}", _SUM
-        if name == "differential":
-            return f"d{self._whole(arguments[0])}", _ATOM
-        if name in _FIELDS:
-            return f"{_FIELDS[name]}{self._bound(arguments[0], _ATOM)}", _PRODUCT
         if name in _WRITERS:
             return _WRITERS[name](self, arguments)
         known = _NAMES.get(name) or (rf"\{name}" if name in _KNOWN else rf"\operatorname{{{name}}}")
@@ -177,12 +199,12 @@ class _Tex:
             return f"{known} {self._whole(arguments[0])}", _PRODUCT
         return rf"{known}\left({self._listed(arguments)}\right)", _ATOM
 
-    def _transpose(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        return rf"{self._bound(arguments[0], _ATOM)}^{{\mathsf T}}", _ATOM
-
-    def _diff(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, by = self._bound(arguments[0], _PRODUCT), self._whole(arguments[1])
-        return rf"\frac{{\partial {of}}}{{\partial {by}}}", _ATOM
+    def _argument(self, gap: re.Match[str], arguments: Sequence[Node]) -> str:
+        """Return what is written in a gap of a form."""
+        if gap[1]:
+            return self._listed(arguments if gap[1] == "all" else arguments[1:])
+        argument = arguments[int(gap[2]) - 1]
+        return self._bound(argument, {"atom": _ATOM, "product": _PRODUCT}.get(gap[3], _SUM))
 
     def _sum_over(self, arguments: Sequence[Node], sign: str = r"\sum") -> tuple[str, int]:
         first, *limits = arguments
@@ -200,10 +222,6 @@ class _Tex:
         steps = r" \, ".join(f"d{self._whole(letter)}" for letter in over)
         sign = {2: r"\iint", 3: r"\iiint"}.get(len(over), sign)
         return f"{sign}{ends} {self._whole(inside)}{joint} {steps}", _SUM
-
-    def _limit(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, letter, end = arguments
-        return rf"\lim_{{{self._whole(letter)} \to {self._whole(end)}}} {self._bound(of, _PRODUCT)}", _SUM
 
     def _gradient(self, arguments: Sequence[Node], order: str = "") -> tuple[str, int]:
         by = f"_{{{self._listed(arguments[1:])}}}" if arguments[1:] else ""
@@ -230,26 +248,6 @@ class _Tex:
         said = unit.value if isinstance(unit, Text) else ""
         return rf"{self._whole(value)} \,\mathrm{{{said}}}", _PRODUCT
 
-    def _indexed(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, index = arguments
-        return rf"{self._bound(of, _ATOM + 1)}_{{{self._whole(index)}}}", _ATOM
-
-    def _transform(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, inside = map(self._whole, arguments)
-        return rf"{of}\left\{{{inside}\right\}}", _ATOM
-
-    def _binomial(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        above, below = map(self._whole, arguments)
-        return rf"\binom{{{above}}}{{{below}}}", _ATOM
-
-    def _over(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, mark = map(self._whole, arguments)
-        return rf"\{mark}{{{of}}}", _ATOM
-
-    def _indexed_norm(self, arguments: Sequence[Node]) -> tuple[str, int]:
-        of, index = map(self._whole, arguments)
-        return rf"\|{of}\|_{{{index}}}", _ATOM
-
     def _both(self, arguments: Sequence[Node]) -> tuple[str, int]:
         steps = [part for part in arguments if isinstance(part, Call)]
         said = "".join(f" {_SIGNS[part.function]} {self._whole(part.arguments[1])}" for part in steps)
@@ -262,44 +260,19 @@ class _Tex:
 
 
 _WRITERS: Mapping[str, Callable[[_Tex, Sequence[Node]], tuple[str, int]]] = {
-    "transpose": _Tex._transpose,
-    "diff": _Tex._diff,
     "sum": _Tex._sum_over,
     "product": lambda tex, arguments: tex._sum_over(arguments, r"\prod"),
     "integral": _Tex._integral,
     "line_integral": lambda tex, arguments: tex._integral(arguments, r" \cdot"),
     "circulation": lambda tex, arguments: tex._integral(arguments, r" \cdot", r"\oint"),
-    "limit": _Tex._limit,
     "gradient": _Tex._gradient,
     "hessian": lambda tex, arguments: tex._gradient(arguments, "^2"),
     "value": _Tex._value,
-    "given": lambda tex, arguments: (rf"{tex._whole(arguments[0])} \mid {tex._listed(arguments[1:])}", _SUM),
-    "between": lambda tex, arguments: (
-        rf"{tex._bound(arguments[0], _ATOM)}\Big|_{{{tex._whole(arguments[1])}}}^{{{tex._whole(arguments[2])}}}",
-        _ATOM,
-    ),
-    "volume": lambda tex, arguments: (rf"^{{{tex._whole(arguments[1])}}} {tex._whole(arguments[0])}", _ATOM),
-    "maps": lambda tex, arguments: (
-        rf"{tex._whole(arguments[0])} : {tex._whole(arguments[1])} \to {tex._whole(arguments[2])}",
-        _SUM,
-    ),
     "applied": lambda tex, arguments: (" ".join(tex._bound(part, _PRODUCT) for part in arguments), _PRODUCT),
-    "bracket": lambda tex, arguments: (rf"\left[{tex._listed(arguments)}\right]", _ATOM),
-    "variational": lambda tex, arguments: (
-        rf"\frac{{\delta {tex._whole(arguments[0])}}}{{\delta {tex._whole(arguments[1])}}}",
-        _ATOM,
-    ),
-    "order": lambda tex, arguments: (rf"\mathcal{{O}}\left({tex._whole(arguments[0])}\right)", _ATOM),
     "power": _Tex._any_power,
     "raised": _Tex._any_power,
-    "indexed": _Tex._indexed,
     "in_unit": _Tex._in_unit,
-    "indexed_norm": _Tex._indexed_norm,
-    "over": _Tex._over,
-    "transform": _Tex._transform,
-    "binomial": _Tex._binomial,
-    "factorial": lambda tex, arguments: (f"{tex._bound(arguments[0], _ATOM)}!", _ATOM),
     "both": _Tex._both,
     "cases": _Tex._cases,
 }
-"""Functions that are not written as a name with brackets -> the method that writes them."""
+"""Functions that need more than a form -> the method that writes them."""
