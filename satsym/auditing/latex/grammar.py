@@ -20,7 +20,7 @@ from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines
 from satsym.auditing.latex.tokens import Token, Unread, braced
 from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
-from satsym.formula.tree import Call, Equality, Grid, Mul, Node, Pow, Sym, cells, children, walk
+from satsym.formula.tree import ZERO, Call, Equality, Grid, Mul, Node, Pow, Sym, calls_in, cells, children, walk
 
 _READINGS = 3
 """Number of times that a formula is read at most until it is clear which of its letters have arguments."""
@@ -99,7 +99,7 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
             if reading.differential >= 0 and not (sign == "=" and are_differentials(one, other)):
                 raise Unread("differentials are not supported", reading.differential)
             taken = isinstance(one, Sym) and one.name in reading.places and line.sides[0][-1].text == ")"
-            if sign == "=" and taken and _stands_in(one, other):
+            if sign == "=" and ((taken and _stands_in(one, other)) or _may_be_quaternion(one, other, reading)):
                 raise Unread("this letter occurs both with and without an argument", line.sides[0][0].at)
             if sign == "element" and isinstance(other, Grid) and side[0].text == "(" and len(other.entries) == 2:
                 other = Call("open_interval", other.entries)
@@ -112,6 +112,15 @@ def _stands_in(name: Node, tree: Node) -> bool:
     if isinstance(tree, Call) and tree.function in ("diff", "d", "value", *words.NOT_COMPARED):
         return False
     return tree == name or any(_stands_in(name, part) for part in children(tree))
+
+
+def _may_be_quaternion(rate: Node, tree: Node, reading: Reading) -> bool:
+    """Return whether the letter of a rate stands before a bracket with a zero and more, as in q' = q (0, w) / 2."""
+    letter = reading.letters.get(rate.name) if isinstance(rate, Sym) else None
+    if letter is None or not letter.dots:
+        return False
+    taken = (call.arguments for call in calls_in(tree) if call.function == "value" and len(call.arguments) > 2)
+    return any(of == Sym(letter.still.name) and first == ZERO for of, first, *_ in taken)
 
 
 def _runs(found: Sequence[Token]) -> Iterator[tuple[int, int]]:

@@ -51,7 +51,10 @@ class OperatorCursor(QuotientCursor):
                 return Call(name, (self._factor(), *by))
         if self._peek() is END:
             return Sym("nabla")
-        return Call("gradient", (self._factor(), *by))
+        of = self._factor()
+        if isinstance(of, Call) and of.function == "transpose" and not self._is_vector(of.arguments[0]):
+            return Call("transpose", (Call("gradient", (*of.arguments, *by)),))  # of a scalar function
+        return Call("gradient", (of, *by))
 
     def _optimum(self, token: Token) -> Node:
         """Read a limit, minimum or maximum of the following expression over the subscript."""
@@ -193,6 +196,8 @@ class OperatorCursor(QuotientCursor):
 
     def _may_be_of_fields(self, begin: int, arguments: Sequence[Node]) -> bool:
         """Return whether a bracket that was read could be a Lie bracket of fields instead of a vector."""
+        if any(constant(argument) is not None for argument in arguments):
+            return False
         nested = [isinstance(argument, Grid) for argument in arguments]
         alone = begin == 0 and (self._peek() is END or self._peek().text in ("|", "vert", "rvert"))
         return (any(nested) and not all(nested)) or not (alone or self._is("^"))

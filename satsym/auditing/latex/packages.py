@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import END, Token, braced, end_of, environment, group_at, group_end
-from satsym.auditing.latex.words import RELATIONS, STYLES, UNITS
+from satsym.auditing.latex.words import RELATIONS, SIGNS, STYLES, UNITS
 
 _OTHER_NAMES = {"cross": "times", "crossproduct": "times", "vdot": "cdot", "dotproduct": "cdot", "bigcdot": "cdot"}
 _OTHER_NAMES |= {"centerdot": "cdot", "grad": "nabla", "vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
@@ -30,6 +30,8 @@ _UNITS |= {"ampere": "A", "square": "", "hour": "h", "minute": "min", "cdot": " 
 _BARS = {"norm": ("lVert", "rVert"), "abs": ("lvert", "rvert")}
 _DERIVATIVES = {"dv": "d", "pdv": "partial", "derivative": "d", "partialderivative": "partial", "odv": "d"}
 _DERIVATIVES |= {"diff": "d", "diffp": "partial"}
+_PLACED = ("aligned", "gathered", "alignedat", "array")
+"""Environments with an option in square brackets that says with which line they stand at the height of the text."""
 _BOLD = ("boldsymbol", "bm", "mathbf", "pmb", "symbf")
 _QUANTITIES = {"SI": 2, "qty": 2, "si": 1, "num": 1, "unit": 1}
 """Macros of the package siunitx -> their numbers of arguments."""
@@ -53,9 +55,13 @@ def put_in(found: Sequence[Token]) -> list[Token]:
         elif token.kind == "open" and first.is_macro(("rm", "it", "sf")):
             done += [replace(first, text="mathrm"), token]
             i += 1
+        elif token.kind == "begin" and token.text in _PLACED and after[:1] == ["["] and after[2:] == ["]"]:
+            done.append(token)
+            i += 3
         elif name in _BOLD and first.kind == "open":
             inside, i = group_at(found, i)
-            done += _bold(token, inside)
+            sign = len(inside) == 1 and inside[0].text in SIGNS
+            done += inside if sign else _bold(token, inside)
         elif name in _QUANTITIES and first.text in ("{", "["):
             inside, i = _quantity(token, found, i)
             done += inside

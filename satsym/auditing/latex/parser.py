@@ -63,6 +63,9 @@ class Parser(SumCursor):
                     continue
                 self._refuse_behind(chain[-1], token)
                 last = self._found[self._i - 1]
+                order = text == "10" and self._is("^", 1)
+                if token.kind == last.kind == "number" and isinstance(chain[-1], Num) and not order:
+                    raise Unread("two numbers stand side by side", token.at)
                 group = self._found[self._i + 1 : self._i + 3] if token.kind == "open" else [token]
                 worn = last.kind == "letter" or last.text in GREEK
                 beside = token.at <= last.at + len(last.text) + (last.kind == "macro")
@@ -167,8 +170,9 @@ class Parser(SumCursor):
                 base = self._transform(base)
             elif self._is("^"):
                 self._part_transposition(base == Sym("e"))
+                taken = self._peek(-1).text == ")"
                 at = self._take().at
-                known = isinstance(base, Sym) and base.name in self._reading.letters
+                known = isinstance(base, Sym) and base.name in self._reading.letters and not taken
                 base = self._raised(base, self._script(), at)
                 if known and self._is("(") and isinstance(base, Pow | Call):
                     base = self._timed_behind_power(base)

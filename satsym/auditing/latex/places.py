@@ -159,7 +159,11 @@ class PlaceCursor(LetterCursor):
         transposed = [t.text for t in inside[1:]] in (["^", "T"], ["^", "top"])
         step = letter in (Letter("H"), Letter("delta")) and any(t.is_sign("+-") for t in inside)
         step &= not any(t.text == "(" for t in inside)
-        return turned or taken or order or transposed or step or divided
+        listed = inside[0].is_macro(("{", "lbrace")) and inside[-1].is_macro(("}", "rbrace"))
+        vector = letter.bold and not letter.index[:1].isdigit()  # r(t - T), not v_0(t - t_0)
+        delayed = (vector or letter in map(Letter, "der")) and _is_lapse(inside)
+        delayed |= vector and len(inside) == 3 and inside[0].text in "tk" and inside[1].is_sign("+-")
+        return turned or taken or order or transposed or step or divided or listed or delayed
 
     def _read_from(self, letter: Letter, bracket: _Bracket, at: int) -> tuple[Node, ...]:
         """Read the arguments in a bracket, and record that the letter is printed with them."""

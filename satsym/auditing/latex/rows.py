@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
 from satsym.auditing.latex import words
+from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.tokens import END, Token, Unread, end_of, environment, group_end
 from satsym.auditing.latex.words import CLOSING, COUNTERS, ELLIPSES, OPENING, OPTIMA, RELATIONS, SYSTEMS, TIMES, UPRIGHT
@@ -91,6 +92,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
     line = 0
     depth, bracket, i = 0, 0, 0
     systems: list[bool] = []
+    levels: list[int] = []
     broken = False
     gaps: list[tuple[int, int]] = []
     while i < len(found):
@@ -99,14 +101,17 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
         if token.kind == "begin":
             system = _is_system(found, i, token.text, rows[-1])
             systems.append(system)
+            levels.append(-1 if system or token.text not in words.MATRICES else depth)
             if system:
                 if token.text in ("array", "alignedat") and i < len(found) and found[i].kind == "open":
                     i = group_end(found, i)
                 rows[-1] = [] if _is_brace(rows[-1]) else rows[-1]
                 continue
         places += [line] * (len(rows) - len(places))
-        if token.kind == "end" and systems and systems.pop():
-            continue
+        if token.kind == "end" and systems:
+            levels.pop()
+            if systems.pop():
+                continue
         inside = not all(systems)
         if token.is_macro(("\\", "cr")) and not inside:
             if depth <= 0 and not _goes_on(rows[-1]):  # else a bracket or a sum goes on in the next line
@@ -127,6 +132,8 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
                     raise Unread("words inside a formula are not supported", token.at)
                 rows.append([])
         elif token.is_macro(("quad", "qquad", " ")):
+            if levels[-1:] == [depth] and _are_entries(rows[-1][-1], found[i] if i < len(found) else END):
+                raise Unread("this space could separate two entries or two factors", found[i].at)
             if not inside and bracket:
                 if broken or (i < len(found) and found[i].text == "+"):
                     continue
@@ -144,6 +151,12 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
     for k, gap in gaps:
         _refuse_gap(rows[k], gap)
     return [(place, row) for place, row in zip(places, rows, strict=True) if row]
+
+
+def _are_entries(before: Token, behind: Token) -> bool:
+    """Return whether two tokens with a space between them, in a matrix, could belong to two entries."""
+    ends = before.kind in ("letter", "number", "close") or before.is_sign(")]") or before.text in GREEK
+    return ends and (behind.kind in ("letter", "number", "open") or behind.is_macro(GREEK | words.DECORATIONS))
 
 
 def _repeats(found: Sequence[Token], i: int, row: Sequence[Token]) -> int:
@@ -279,9 +292,9 @@ def _before_condition(part: list[Token]) -> list[list[Token]]:
 
 def _at_colons(found: Sequence[Token]) -> list[Token]:
     """Return the tokens with colons between relations replaced by semicolons."""
-    part = list(found)
+    part, depths = list(found), list(accumulate(token.nesting for token in found))
     for k in range(1, len(part) - 1):
-        colon = part[k].is_sign(":") and not _sign(part[k - 1]) and not _sign(part[k + 1])
+        colon = depths[k] == 0 and part[k].is_sign(":") and not _sign(part[k - 1]) and not _sign(part[k + 1])
         if colon and _has_relation(part[:k]) and _has_relation(part[k:]):
             part[k] = Token("sign", ";", part[k].at)
     return part

@@ -81,7 +81,12 @@ class Macro:
 UNKNOWN = Macro(0, ())
 """A macro whose definition could not be read."""
 Macros = Mapping[str, Macro]
-_NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
+_GAP = r"(?:\\,| )"
+_NUMBER = re.compile(
+    rf"(?:[0-9]{{1,3}}(?:{_GAP}[0-9]{{3}})+(?![0-9])|[0-9]+)"
+    rf"(?:\.(?:(?:[0-9]{{3}}{_GAP})+[0-9]{{1,3}}(?![0-9])|[0-9]+))?|\.[0-9]+"
+)
+"""Pattern of a number, whose digits may be parted into groups of three."""
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
 _POWER_OF_TEN = re.compile(r"\s*\\(?:times|cdot)\s*10\s*\^")
 _BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
@@ -280,7 +285,7 @@ def _pieces(text: str, start: int) -> list[Token]:
     while position < len(text):
         number = _NUMBER.match(text, position)
         if number:
-            value, position = number[0], number.end()
+            value, position = re.sub(_GAP, "", number[0]), number.end()
             while (comma := _DECIMAL_COMMA.match(text, position)) and "." not in value:
                 digits = _NUMBER.match(text, comma.end())
                 assert digits is not None
