@@ -32,8 +32,13 @@ def _place(engine: Engine[S], tree: Call) -> tuple[Matrix[S], int, int]:
     return matrix, _index(tree.arguments[1], matrix.shape[0]), _index(tree.arguments[2], matrix.shape[1])
 
 
+def row_key(call: Call) -> str:
+    """Return the key of the row that ``row['item']`` or ``row['item', 'part']`` refers to."""
+    return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
+
+
 def _row(engine: Engine[S], tree: Call) -> Value:
-    return engine.sources.row(" ".join(part.value for part in tree.arguments if isinstance(part, Text)))
+    return engine.sources.row(row_key(tree))
 
 
 def _at(engine: Engine[S], tree: Call) -> Value:

@@ -214,14 +214,14 @@ class _Reader:
             keys = found.slice.elts if isinstance(found.slice, ast.Tuple) else [found.slice]
             return self._call(ast.Call(found.value, keys, []), found.value.id, depth)
         what = _WORDS.get(type(found), f"this ({type(found).__name__})")
-        raise BadInput(f"{what} is not allowed here{_column(found)}")
+        raise BadInput(f"{what} is not allowed here{column(found)}")
 
     def _constant(self, found: ast.Constant) -> Node:
         if isinstance(found.value, str) and self._judging:
             return Text(found.value)
         text = self._text[found.col_offset : found.end_col_offset]
         if not _DECIMAL.fullmatch(text):
-            raise BadInput(f"{printable(text)} is not a plain decimal number{_column(found)}")
+            raise BadInput(f"{printable(text)} is not a plain decimal number{column(found)}")
         return Num(Fraction(text))
 
     def _chain(self, found: ast.BinOp, depth: int) -> Node:
@@ -244,11 +244,11 @@ class _Reader:
             return Neg(self._joined(left.operand, link, right))
         if isinstance(link.op, ast.Div):
             if constant(right) == 0:
-                raise BadInput(f"a division by zero{_column(link.right)}")
+                raise BadInput(f"a division by zero{column(link.right)}")
             return Div(left, right)
         if isinstance(link.op, ast.Mult) or (isinstance(link.op, ast.MatMult) and self._judging):
             return Mul((*left.factors, right) if isinstance(left, Mul) else (left, right))
-        raise BadInput(f"only the operators + - * / ** are allowed here{_column(link)}")
+        raise BadInput(f"only the operators + - * / ** are allowed here{column(link)}")
 
     def _power(self, found: ast.BinOp, depth: int) -> Node:
         base, exponent = self.node(found.left, depth + 1), self.node(found.right, depth + 1)
@@ -256,30 +256,31 @@ class _Reader:
             None if isinstance(found.right, ast.BinOp) and isinstance(found.right.op, ast.Pow) else constant(exponent)
         )
         if value is None:
-            raise BadInput(f"an exponent must be a number{_column(found.right)}; write exp(...) for powers of e")
+            raise BadInput(f"an exponent must be a number{column(found.right)}; write exp(...) for powers of e")
         if abs(value) > MAX_EXPONENT or value.denominator > MAX_DENOMINATOR:
             raise BadInput(
-                f"the exponent {value} is out of range (-{MAX_EXPONENT} to {MAX_EXPONENT}){_column(found.right)}"
+                f"the exponent {value} is out of range (-{MAX_EXPONENT} to {MAX_EXPONENT}){column(found.right)}"
             )
         if value <= 0 and constant(base) == 0:
-            raise BadInput(f"zero to the power of {value}{_column(found)}")
+            raise BadInput(f"zero to the power of {value}{column(found)}")
         return Pow(base, exponent)
 
     def _call(self, found: ast.Call, name: str, depth: int) -> Node:
         if name not in self._functions:
             raise BadInput(
-                f"the function {shown(name)} is unknown{_column(found.func)}; {suggestion(name, self._functions)}"
+                f"the function {shown(name)} is unknown{column(found.func)}; {suggestion(name, self._functions)}"
             )
         if found.keywords and not self._judging:
-            raise BadInput(f"{name} takes no keyword arguments{_column(found.func)}")
+            raise BadInput(f"{name} takes no keyword arguments{column(found.func)}")
         least, most = self._functions[name]
         if not least <= len(found.args) <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"
-            raise BadInput(f"{name} takes {wanted} arguments, not {len(found.args)}{_column(found.func)}")
+            raise BadInput(f"{name} takes {wanted} arguments, not {len(found.args)}{column(found.func)}")
         positional = tuple(self.node(argument, depth + 1) for argument in found.args)
         named = tuple((checked_name(k.arg or "**"), self.node(k.value, depth + 1)) for k in found.keywords)
         return Call(name, positional, named)
 
 
-def _column(found: ast.expr) -> str:
+def column(found: ast.AST) -> str:
+    """Return where a node of Python's syntax tree stands, for messages; empty if it is not known."""
     return f" (column {found.col_offset + 1})" if hasattr(found, "col_offset") else ""

@@ -27,11 +27,12 @@ from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.judge import formula as formulas
 from satsym.auditing.judge import value
 from satsym.auditing.judged import Judged
-from satsym.auditing.ledger.contents import Ledger, Row, row_key
+from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range
 from satsym.auditing.run import audit
 from satsym.formula import field
+from satsym.formula.functions import row_key
 from satsym.formula.tree import (
     Add,
     Call,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.comparison.compare import plans
-from satsym.auditing.diagnosis.smallest_edit import Remedy, remedy, wrong_formula
+from satsym.auditing.diagnosis.smallest_edit import Remedy, first_remedy, wrong_formula
 from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.schema import DocumentTable, RowTable
 from satsym.auditing.ledger.scopes import Scope
@@ -78,7 +78,7 @@ def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Su
     ways = plans(bench, row, row.printed, bench.target(row))
     if any(way.is_right(way.printed) for way in ways):
         return Found(True, "", None, 0.0)
-    compared, fix = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
+    compared, fix = first_remedy(ways)
     write = subject.writer(subject.latex, subject.derivatives(subject.latex, derivatives))
     correct = _correct(bench, row, compared, fix)
     said = wrong_formula([""] * len(compared.labels), fix, "", "", write(correct) if correct else "", write)

@@ -13,7 +13,7 @@ from satsym.auditing.ledger.scopes import Scope, self_named
 from satsym.formula.budget import Allowance, Limit, OverBudget
 from satsym.formula.calculus import Calculus
 from satsym.formula.field import Undecided
-from satsym.formula.tree import Equality, Formula, Node, Sym, Text, each, names_in, substituted, symbols, walk
+from satsym.formula.tree import Equality, Formula, Node, Sym, Text, each, grid, names_in, substituted, symbols, walk
 from satsym.formula.values import Kernel, Matrix, Relation, Roots, Sources, Value
 from satsym.formula.writing import written
 from satsym.records import record, shelf
@@ -282,7 +282,7 @@ class Bench:
         engine = self._engine(row, kind)
         formula = instead if instead is not None else self.in_ours(row)
         if isinstance(formula, tuple):
-            return Matrix(tuple(tuple(engine.scalar(entry) for entry in line) for line in formula))
+            return engine.value(grid(formula))
         if isinstance(formula, Equality) and isinstance(engine.value(formula.rhs), Matrix):
             return engine.value(formula.rhs)
         return engine.value(formula)

@@ -95,8 +95,7 @@ def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] 
 
     If there are few places, all subsets of at least two places are tried. Otherwise only all places, and all but one.
     """
-    names = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
-    for name in names:
+    for name in _names_in(formula):
         places = [path for path, node in walk(formula) if node == Sym(name) and not in_exponent(formula, path)]
         for other in letters.family(name):
             if usable(other) and letters.is_slip(name, other):
@@ -220,9 +219,14 @@ def _near(value: Fraction) -> list[Fraction]:
 
 def _names(letters: Scope, formula: Node) -> list[str]:
     """Return symbols that may be missing as a factor: first those of the formula, then others of the notation."""
-    inside = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
+    inside = _names_in(formula)
     others = letters.family(inside[0]) if inside else letters.family("")
     return [*inside, *(name for name in others if name not in inside)]
+
+
+def _names_in(formula: Node) -> list[str]:
+    """Return the symbols of a formula in the order in which they are printed."""
+    return list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
 
 
 def regrouped(node: Node) -> Iterator[Node]:

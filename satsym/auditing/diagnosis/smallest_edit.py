@@ -58,6 +58,11 @@ def remedy(plan: Plan) -> Remedy | None:
         return None
 
 
+def first_remedy(ways: Sequence[Plan]) -> tuple[Plan, Remedy | None]:
+    """Return the first of several plans for which edits were found, and the edits; otherwise the first plan."""
+    return next(((way, found) for way in ways if (found := remedy(way)) is not None), (ways[0], None))
+
+
 def _remedy(plan: Plan) -> Remedy | None:
     wrong = _wrong_cells(plan)
     if len(wrong) > 1:

@@ -63,6 +63,11 @@ class _Entry:
     table: dict[str, Any] = field(default_factory=dict)
     letters: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def meanings(self) -> dict[str, Node]:
+        """Meanings of the letters in the names of the model."""
+        return {name: safe.expression(text, judging=True) for name, text in self.letters.items()}
+
 
 def draft(path: Path, model: str, before: str = "", let: Sequence[str] = ()) -> Draft:
     """Draft a ledger from a document.
@@ -194,8 +199,7 @@ def _fill(entry: _Entry) -> None:
     if follows and not address and isinstance(shown, Equality):
         # it holds without being one of the equations: the right-hand side is held against what the left-hand side is
         entry.table["printed"] = written(shown.rhs)
-        meanings = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
-        address = written(substituted(shown.lhs, meanings))
+        address = written(substituted(shown.lhs, entry.meanings))
     entry.table["holds"] = f"subs('{address}', {controls})" if fit.free else address
 
 
@@ -272,8 +276,7 @@ def _origin(entry: _Entry, other: _Entry, derived: Derived) -> str:
     if not isinstance(mine, Equality) or not isinstance(theirs, Equality):
         return ""
     row: Node = Call("row", tuple(map(Text, filter(None, (other.display.item, other.part)))))
-    meant = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
-    letters = {name: tree.name for name, tree in meant.items() if isinstance(tree, Sym)}
+    letters = {name: tree.name for name, tree in entry.meanings.items() if isinstance(tree, Sym)}
     tries: list[tuple[Node, Node]] = [(row, theirs.rhs)]
     for name, ours in letters.items():
         if ours in symbols(theirs.rhs):
@@ -291,7 +294,7 @@ def _origin(entry: _Entry, other: _Entry, derived: Derived) -> str:
 def _ours(entry: _Entry) -> Node | Equality | None:
     try:
         tree = safe.statement(str(entry.table["printed"]))
-        values = {name: safe.expression(text, judging=True) for name, text in entry.letters.items()}
+        values = entry.meanings
     except BadInput:
         return None
     return each(tree, lambda side: substituted(side, values))

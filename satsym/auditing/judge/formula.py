@@ -8,7 +8,7 @@ from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.comparison.compare import plans
 from satsym.auditing.comparison.equations import Equal, Multiple
 from satsym.auditing.comparison.plan import Never, Plan
-from satsym.auditing.diagnosis.smallest_edit import remedy, wrong_formula
+from satsym.auditing.diagnosis.smallest_edit import first_remedy, wrong_formula
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.sentences import Said, joined, say
@@ -28,7 +28,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
             if fault and not _target_fault(bench, compared):
                 return Outcome(row, True, derived, compared, unit=True, remark=say("inhomogeneous", fault))
             return Outcome(row, True, derived, compared)
-    compared, found = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
+    compared, found = first_remedy(ways)
     derived = shown(compared, found.cells if found else None)
     why = compared.why if isinstance(compared, Never) else Said("")
     remark = wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)

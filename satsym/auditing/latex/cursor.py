@@ -122,6 +122,11 @@ class Cursor(ABC):
         token = self._peek(ahead)
         return token.kind == kind and token.text == text
 
+    @property
+    def _here(self) -> int:
+        """Position of the next token, or of the last one at the end of the formula."""
+        return self._found[min(self._i, len(self._found) - 1)].at
+
     def _is_bar_of_place(self) -> bool:
         """Return whether a vertical bar with an index comes next."""
         return self._peek().text in ("|", "vert", "rvert") and self._is("_", 1)
@@ -167,16 +172,20 @@ class Cursor(ABC):
             self._i = end
             return inside
         if token.kind == "number" and len(token.text) > 1:
-            if self._i > 1 and self._found[self._i - 2].text in ("^", "_"):
+            if self._peek(-2).text in ("^", "_"):
                 raise Unread("an exponent or an index of several digits needs braces", token.at)
-            rest = Token("number", token.text[1:], token.at + 1)
-            self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
-            return [Token("number", token.text[0], token.at)]
+            return [self._first_digit(token)]
         if token.is_macro(DECORATIONS - MARKS.keys() | UPRIGHT):
             return [token, *self._group()]
         if token.is_macro(("frac", "tfrac", "dfrac")):
             return [token, *self._group(True), *self._group(True)]
         return [token]
+
+    def _first_digit(self, number: Token) -> Token:
+        """Return the first digit of a number that was read; the other digits are read next."""
+        rest = Token("number", number.text[1:], number.at + 1)
+        self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
+        return Token("number", number.text[0], number.at)
 
     def _script_end(self) -> int:
         """Return the position after the next subscript or superscript."""
@@ -187,9 +196,7 @@ class Cursor(ABC):
         token = self._take()
         if token.kind != "open":
             if token.kind == "number" and len(token.text) > 1 and "." not in token.text:
-                rest = Token("number", token.text[1:], token.at + 1)
-                self._found = [*self._found[: self._i], rest, *self._found[self._i :]]
-                token = Token("number", token.text[0], token.at)
+                token = self._first_digit(token)
             inner = [token, *(self._group(True) if token.is_macro(DECORATIONS) else ())]
             return braced(inner, token.at) if braces else inner
         begin, end = self._i - 1, group_end(self._found, self._i - 1)

@@ -136,7 +136,7 @@ def _stacked(found: Sequence[Token], i: int) -> list[Token]:
 def _quantity(macro: Token, found: Sequence[Token], i: int) -> tuple[list[Token], int]:
     """Return the tokens of a number with its unit in the notation of siunitx, and the position after it."""
     if found[i].text == "[":
-        i = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1) + 1
+        i = _square_end(found, i) + 1
     groups, i = _groups(found, i, _QUANTITIES[macro.text])
     number = groups.pop(0) if groups and macro.text in ("SI", "num", "qty") else ()
     if not groups:
@@ -174,9 +174,14 @@ def _order(found: Sequence[Token], i: int) -> tuple[list[Token], int]:
     """Return the order of a derivative in square brackets, empty for the first order, and the position after it."""
     if found[i].text != "[":
         return [], i
-    end = next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1)
+    end = _square_end(found, i)
     at = found[i].at
     return [Token("sign", "^", at), *braced(found[i + 1 : end], at)], end + 1
+
+
+def _square_end(found: Sequence[Token], i: int) -> int:
+    """Return the position of the next square bracket that closes."""
+    return next((k for k in range(i, len(found)) if found[k].text == "]"), len(found) - 1)
 
 
 def _quotient(sign: str, order: list[Token], groups: list[list[Token]], at: int) -> list[Token]:

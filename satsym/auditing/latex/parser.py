@@ -146,8 +146,7 @@ class Parser(SumCursor):
         """
         self._depth += 1
         if self._depth > MAX_DEPTH:
-            at = self._found[min(self._i, len(self._found) - 1)].at
-            raise Unread(f"the formula is nested more than {MAX_DEPTH} levels deep", at)
+            raise Unread(f"the formula is nested more than {MAX_DEPTH} levels deep", self._here)
         try:
             return self._factor_within()
         finally:

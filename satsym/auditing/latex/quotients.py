@@ -135,7 +135,7 @@ class QuotientCursor(PlaceCursor):
         """Read the operand of a derivative operator, which is a bracket or the rest of the term."""
         if self._is("(") or self._is("["):
             return self._bracket()
-        at = self._found[min(self._i, len(self._found) - 1)].at
+        at = self._here
         found = self._product()
         if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1:
             raise Unread("without brackets, it is not clear what is differentiated", at)

@@ -264,7 +264,7 @@ def _stands_apart(found: Sequence[Token], i: int) -> bool:
 
 def _is_relation(found: Sequence[Token], i: int, anything: bool) -> bool:
     """Return whether the group at a position contains a relation, or with `anything` whether it is not empty."""
-    inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
+    inside = group_at(found, i)[0] if i < len(found) and found[i].kind == "open" else []
     return (anything and bool(inside)) or any(t.text == "=" or t.text in RELATIONS for t in inside)
 
 

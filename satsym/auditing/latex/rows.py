@@ -194,7 +194,7 @@ def _goes_on(row: Sequence[Token]) -> bool:
     k = max((k for k, token in enumerate(row) if token.is_macro(("sum", "int"))), default=-1)
     end = k + 1
     while 0 < end < len(row) and row[end].text in ("_", "^"):
-        end = group_end(row, end + 1) if end + 1 < len(row) and row[end + 1].kind == "open" else end + 2
+        end = group_end(row, end + 1)
     return k >= 0 and end >= len(row)
 
 

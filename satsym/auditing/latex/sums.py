@@ -31,7 +31,7 @@ class SumCursor(EnclosedCursor):
                 negative, before = negative ^ (sign == "-"), sign
             if sign:
                 double = words.DOUBLE_SIGNS[self._take().text]
-            at = self._found[min(self._i, len(self._found) - 1)].at
+            at = self._here
             term = self._product()
             if summed & self._free(term):
                 raise Unread("without brackets, it is not clear where the sum ends", at)

@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-FUNCTIONS = {
-    **{name: name for name in "sin cos tan exp log sinh cosh tanh min max".split()},
-    "ln": "log",
-    "arcsin": "asin",
-    "arccos": "acos",
-    "arctan": "atan",
-    "sgn": "sign",
-    "sign": "sign",
-    "sat": "sat",
-    "abs": "abs",
-    "asin": "asin",
-    "acos": "acos",
-    "atan": "atan",
-    "sqrt": "sqrt",
-    "atan2": "atan2",
-    "diff": "diff",
-    "d": "d",
-    "det": "det",
+FUNCTIONS = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "sgn": "sign"}
+FUNCTIONS |= {
+    name: name
+    for name in "sin cos tan exp log sinh cosh tanh min max sign sat abs asin acos atan sqrt atan2 diff d det".split()
 }
 RECIPROCALS = {"sec": "cos", "csc": "sin", "cot": "tan", "sech": "cosh", "csch": "sinh", "coth": "tanh"}
 ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}

@@ -18,7 +18,8 @@ from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.propositions.reading import Proposition
 from satsym.auditing.sentences import Said
 from satsym.formula import reading
-from satsym.formula.tree import Call, Equality, Formula, Node, Text, calls_in, cells, each, names_in, substituted, walk
+from satsym.formula.functions import row_key
+from satsym.formula.tree import Equality, Formula, Node, Text, calls_in, cells, each, names_in, substituted, walk
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -102,11 +103,6 @@ class Ledger:
         """Return the numbers of the document's equations etc. for which the ledger has no row."""
         covered = {row.table.item for row in self.rows}
         return [number for number in self.document.numbers if number not in covered]
-
-
-def row_key(call: Call) -> str:
-    """Return the key of the row that ``row['item']`` or ``row['item', 'part']`` refers to."""
-    return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
 
 
 def printed(table: RowTable, scope: Scope) -> Formula | None:

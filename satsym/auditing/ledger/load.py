@@ -15,12 +15,13 @@ from typing import Any
 from satsym.auditing import measurements, quantities
 from satsym.auditing.ledger import contents, documents, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
-from satsym.auditing.ledger.contents import Ledger, Row, row_key
+from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
+from satsym.formula.functions import row_key
 from satsym.formula.tree import Node, calls_in, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files

@@ -14,7 +14,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from satsym.formula.reading import MAX_LENGTH, measured, parsed
+from satsym.formula.reading import MAX_LENGTH, column, measured, parsed
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -164,7 +164,7 @@ class _Check(ast.NodeVisitor):
     def generic_visit(self, node: ast.AST) -> None:
         if not isinstance(node, _ALLOWED):
             what = _WORDS.get(type(node), f"this ({type(node).__name__})")
-            raise BadInput(f"{what} is not allowed here{_column(node)}")
+            raise BadInput(f"{what} is not allowed here{column(node)}")
         super().generic_visit(node)
 
     def visit_Name(self, node: ast.Name) -> None:
@@ -176,11 +176,11 @@ class _Check(ast.NodeVisitor):
             return
         known = [*self._bound, *words.values, *words.symbols]
         hint = "is a measurement; give its arguments in brackets" if node.id in words.functions else ""
-        raise BadInput(f"{shown(node.id)} {hint or f'is unknown here; {suggestion(node.id, known)}'}{_column(node)}")
+        raise BadInput(f"{shown(node.id)} {hint or f'is unknown here; {suggestion(node.id, known)}'}{column(node)}")
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         if node.attr.startswith("_"):
-            raise BadInput(f"{shown(node.attr)} is not a permitted attribute{_column(node)}")
+            raise BadInput(f"{shown(node.attr)} is not a permitted attribute{column(node)}")
         self.visit(node.value)
 
     def visit_Subscript(self, node: ast.Subscript) -> None:
@@ -189,24 +189,24 @@ class _Check(ast.NodeVisitor):
             return
         if isinstance(node.value, ast.Name) and node.value.id == MEANINGS:
             if not (isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str)):
-                raise BadInput(f"the index must be one quoted symbol, as in meanings['x1']{_column(node)}")
+                raise BadInput(f"the index must be one quoted symbol, as in meanings['x1']{column(node)}")
             self.symbols[MEANINGS] = None
             return
         self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> None:
         if not isinstance(node.func, ast.Name):
-            raise BadInput(f"only a function given by its name can be called here{_column(node)}")
+            raise BadInput(f"only a function given by its name can be called here{column(node)}")
         name = node.func.id
         if name in QUANTIFIERS:
             if len(node.args) != 1 or node.keywords:
-                raise BadInput(f"{name} takes one argument, a comprehension or a list{_column(node)}")
+                raise BadInput(f"{name} takes one argument, a comprehension or a list{column(node)}")
         elif name in CONNECTIVES:
             if len(node.args) != 2 or node.keywords:
-                raise BadInput(f"{name} takes two propositions{_column(node)}")
+                raise BadInput(f"{name} takes two propositions{column(node)}")
         elif name not in self._words.functions:
             known = [*self._words.functions, *QUANTIFIERS, *CONNECTIVES]
-            raise BadInput(f"the measurement {shown(name)} is unknown{_column(node)}; {suggestion(name, known)}")
+            raise BadInput(f"the measurement {shown(name)} is unknown{column(node)}; {suggestion(name, known)}")
         else:
             self._check_arguments(name, node)
         for argument in [*node.args, *(keyword.value for keyword in node.keywords)]:
@@ -215,7 +215,7 @@ class _Check(ast.NodeVisitor):
     def _check_arguments(self, name: str, node: ast.Call) -> None:
         signature = inspect.signature(self._words.functions[name])
         if any(keyword.arg is None for keyword in node.keywords):
-            raise BadInput(f"** is not allowed here{_column(node)}")
+            raise BadInput(f"** is not allowed here{column(node)}")
         try:
             signature.bind(*node.args, **{str(keyword.arg): keyword.value for keyword in node.keywords})
         except TypeError as error:
@@ -228,7 +228,7 @@ class _Check(ast.NodeVisitor):
             targets = part.target.elts if isinstance(part.target, ast.Tuple) else [part.target]
             for target in targets:
                 if not isinstance(target, ast.Name) or target.id in {*self._words.values, *self._words.functions}:
-                    raise BadInput(f"use a new name for the members{_column(part.target)}")
+                    raise BadInput(f"use a new name for the members{column(part.target)}")
                 self._bound.append(target.id)
             for condition in part.ifs:
                 self.visit(condition)
@@ -237,7 +237,3 @@ class _Check(ast.NodeVisitor):
 
     visit_GeneratorExp = _visit_comprehension
     visit_ListComp = _visit_comprehension
-
-
-def _column(node: ast.AST) -> str:
-    return f" (column {node.col_offset + 1})" if hasattr(node, "col_offset") else ""
