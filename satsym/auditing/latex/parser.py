@@ -57,7 +57,7 @@ class Parser(SumCursor):
             elif token.is_macro(words.BETWEEN):
                 self._i += 1
                 chain[-1] = Call(words.BETWEEN[text], (chain[-1], self._signed_factor()))
-            elif self._begins_factor(token):
+            elif self._begins_factor(token) and not (self._deriving and self._is_bar_of_place()):
                 if self._is_along_field(chain[-1]):
                     chain[-1] = self._applied(chain[-1])
                     continue
@@ -120,7 +120,11 @@ class Parser(SumCursor):
     def _is_along_field(self, node: Node) -> bool:
         """Return whether an expression is the sign of a derivative along a field, as in ``L_f h``, or a power of it."""
         letter = self._letter_of(node, power=True)
-        return letter is not None and letter.base == "L" and letter.index.rstrip("_0123456789") in words.FIELDS
+        if letter is None or letter.base != "L":
+            return (
+                letter is not None and letter.base == "D" and any(rf"\{style}" in letter.foot for style in words.BOLD)
+            )
+        return letter.index.rstrip("_0123456789") in words.FIELDS
 
     def _applied(self, operator: Node) -> Node:
         """Read what an operator is applied to, which may be another operator with its operand."""
@@ -175,7 +179,7 @@ class Parser(SumCursor):
                 base = self._raised(base, self._script(), at)
                 if known and self._is("(") and isinstance(base, Pow | Call):
                     base = self._timed_behind_power(base)
-            elif self._is_bar_of_place():
+            elif self._is_bar_of_place() and not self._deriving:
                 at = self._take().at
                 self._i += 1
                 below = self._script()

@@ -40,7 +40,7 @@ class LetterCursor(Cursor):
             self._i += 1
             group = self._group()
             word = "".join(t.text for t in group if t.text not in "~ ")
-            if len(word) == 1 or is_name(cleaned(word)):
+            if len(word) == 1 or (is_name(cleaned(word)) and "[" not in word):  # in brackets it is a unit
                 letter = Letter(cleaned(word)) if word else None
         elif token.kind == "open":
             letter = self._letter_in(self._group())

@@ -14,6 +14,9 @@ from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 class QuotientCursor(PlaceCursor):
     """Parser of derivatives in printed formulas."""
 
+    _deriving = False
+    """Whether the operand of a derivative is read, behind which a bar belongs to the derivative."""
+
     def _derivative(self, token: Token) -> Node | None:
         """Read a derivative that is printed as a quotient.
 
@@ -136,7 +139,9 @@ class QuotientCursor(PlaceCursor):
         if self._is("(") or self._is("["):
             return self._bracket()
         at = self._here
+        self._deriving, before = True, self._deriving
         found = self._product()
+        self._deriving = before
         if isinstance(found, Mul) and sum(constant(factor) is None for factor in found.factors) > 1:
             raise Unread("without brackets, it is not clear what is differentiated", at)
         return found

@@ -110,6 +110,9 @@ class RefusalCursor(OperatorCursor):
     def _refuse_derivative(self, above: Sequence[Token], below: Sequence[Token], at: int) -> None:
         """Refuse quotients that denote other kinds of derivatives, and remaining differentials."""
         if not above or (len(above) > 1 and above[1].text in ("^", "_")):
+            differentials = above and len(below) > 1 and is_differential(above[0]) and is_differential(below[0])
+            if differentials and above[1].text == "^" and below[1].text not in ("^", "_"):
+                raise Unread("a derivative of this order is not supported", at)
             return
         if above[0].text in ("D", "delta") and len(below) > 1 and below[0].text == above[0].text:
             raise Unread("this kind of derivative is not supported", at)

@@ -14,6 +14,8 @@ MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
 STYLES = dict.fromkeys(
     "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
+BOLD = frozenset(STYLES)
+"""Macros that set vectors."""
 STYLES |= dict.fromkeys("mathcal mathscr mathfrak mathbb cal".split(), "cal") | {"mathtt": "tt"}
 DECORATIONS = frozenset((*ACCENTS, *MARKS, *STYLES))
 UPRIGHT = frozenset(
@@ -120,7 +122,7 @@ ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
 SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
 """Functions that look like products of letters without their backslash; longer names come first."""
-CALLED = tuple("eig diag rank trace dim ker span adj sat sinc erf".split())
+CALLED = tuple("eig diag rank trace dim ker span adj sat sinc erf cov Cov var Var vec tr Tr mod grad div curl".split())
 """Names of functions that look like products of letters before a bracket."""
 OPERATOR_NAMES = frozenset("Pr dim ker deg gcd hom lg".split())
 """Functions of unknown meaning for which LaTeX has a macro."""
