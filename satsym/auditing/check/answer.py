@@ -15,7 +15,8 @@ from satsym.auditing.check.meanings import Guess, Meanings, given_letters
 from satsym.auditing.latex.cursor import CONSTANT, Reading
 from satsym.auditing.latex.grammar import read
 from satsym.auditing.latex.letters import Letter
-from satsym.auditing.latex.tokens import plain_tokens, tokens
+from satsym.auditing.latex.plain import plain_tokens
+from satsym.auditing.latex.tokens import tokens
 from satsym.auditing.latex.words import EITHER_PRODUCT, RELATIONS
 from satsym.auditing.latex.writing import Writer, in_latex, in_plain
 from satsym.formula.calculus import difference

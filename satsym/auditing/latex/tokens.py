@@ -7,8 +7,7 @@ import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from satsym.auditing.latex.letters import Letter, of_word
-from satsym.auditing.latex.words import FUNCTIONS, NUMBERED_FUNCTIONS, STYLES
+from satsym.auditing.latex.words import STYLES
 from satsym.formula.reading import MAX_DEPTH, MAX_DIGITS
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -89,7 +88,8 @@ _NUMBER = re.compile(
 """Pattern of a number, whose digits may be parted into groups of three."""
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
 _POWER_OF_TEN = re.compile(r"\s*\\(?:times|cdot)\s*10\s*\^")
-_BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
+BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
+"""Pattern of the characters that no formula may contain."""
 _SUBSTITUTES = {
     "\u2212": "-",
     "\u00b7": "*",
@@ -134,7 +134,7 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
     """
     if len(text) > MAX_LENGTH:
         raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", start)
-    if broken := _BROKEN.search(text):
+    if broken := BROKEN.search(text):
         raise Unread("a character is invalid; save the file as UTF-8", start + broken.start())
     found = expanded(_pieces(text, start), macros or {})
     depth = 0
@@ -147,13 +147,14 @@ def tokens(text: str, macros: Macros | None = None, start: int = 0) -> list[Toke
                 else "this closing brace has no opening brace"
             )
             raise Unread(why, token.at)
-        _refuse_long(token)
+        refuse_long(token)
     if depth:
         raise Unread("a brace is not closed", start + len(text.rstrip()))
     return found
 
 
-def _refuse_long(token: Token) -> None:
+def refuse_long(token: Token) -> None:
+    """Refuse a number that has too many digits."""
     if token.kind == "number" and len(token.text) > MAX_DIGITS:
         raise Unread(f"a number has more than {MAX_DIGITS} digits", token.at)
 
@@ -318,17 +319,18 @@ def _pieces(text: str, start: int) -> list[Token]:
         elif kind in ("mathmode_inline", "mathmode_display"):
             found.append(Token("sign", "$", at))
         elif kind == "specials":
-            found += _characters(argument.specials_chars, at)
+            found += characters(argument.specials_chars, at)
         elif kind == "char":
-            found += _characters(argument, at)
+            found += characters(argument, at)
     return found
 
 
-def _characters(text: str, at: int) -> list[Token]:
+def characters(text: str, at: int) -> list[Token]:
+    """Return the tokens of characters that stand for themselves, all at one given position."""
     found = []
     for character in text:
         if character in _SUBSTITUTES:
-            found += _placed(_SUBSTITUTES[character], at)
+            found += placed(_SUBSTITUTES[character], at)
         elif character in _GREEK:
             found.append(Token("macro", _GREEK[character], at))
         elif character.isascii() and character.isalpha():
@@ -338,89 +340,6 @@ def _characters(text: str, at: int) -> list[Token]:
     return found
 
 
-_PLAIN = re.compile(
-    r"\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2}(?![A-Za-z0-9_.]))?)"
-    r"|(?P<above>d(?:\^?(?P<order>[2-4]))?(?P<of>[A-Za-z]\w*)?(?= */ *d[A-Za-z]))"
-    r"|(?P<word>[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*)(?P<primes>'*)"
-    r"|(?P<power>(?:\*\*|\^)\s*[-+]?)|(?P<sign>[^\sA-Za-z0-9]))"
-)
-"""Pattern of the pieces of plain notation; ``d2x`` is a differential only before a slash and another differential."""
-_BELOW = re.compile(r"d(?:(?P<time>t)(?P<times>[2-4])|(?P<by>[A-Za-z]\w*))")
-"""Pattern of the denominator of a quotient of differentials; ``dt2`` is the square of ``dt``."""
-
-
-def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
-    """Return the tokens of a formula in plain notation, ``2n*x_dot`` or ``2 n x_dot``.
-
-    Names, which may have several letters, functions and quotients of differentials are replaced by their LaTeX. An
-    unknown word whose letters are all known becomes the product of its letters.
-
-    Raises
-    ------
-    Unread
-        If the formula is too long, or contains an invalid character.
-    """
-    if len(text) > MAX_LENGTH:
-        raise Unread(f"the formula is longer than {MAX_LENGTH} characters; split it", 0)
-    if broken := _BROKEN.search(text):
-        raise Unread("a character is invalid; save the text as UTF-8", broken.start())
-    found: list[Token] = []
-    text = text.replace("!=", "\u2260 ")
-    for match in _PLAIN.finditer(text.rstrip()):
-        kind = next(name for name in ("number", "above", "word", "power", "sign") if match[name] is not None)
-        value, at = match[kind], match.start(kind)
-        if kind == "above":
-            found += _placed(f"d{_order(match['order'])} {of_word(match['of']).latex if match['of'] else ''}", at)
-        elif kind == "word" and found and found[-1].text == "/" and (below := _BELOW.fullmatch(value)):
-            found += _placed(f"d {of_word(below['time'] or below['by']).latex}{_order(below['times'])}", at)
-        elif kind == "word":
-            found += _word(value, len(match["primes"]), at, text[match.end() :].lstrip()[:1], is_known)
-        elif kind == "sign":
-            found += _characters(value, at)
-        elif kind == "power":
-            found += [Token("sign", "^", at), *([Token("sign", value[-1], at)] if value[-1] in "+-" else [])]
-        else:
-            found.append(Token("number", value, at))
-            _refuse_long(found[-1])
-    if len(found) > MAX_TOKENS:
-        raise Unread(f"the formula has more than {MAX_TOKENS} symbols; split it", found[MAX_TOKENS].at)
-    return _exponents_grouped(found)
-
-
-def _order(digit: str | None) -> str:
-    return f"^{digit}" if digit else ""
-
-
-def _exponents_grouped(found: list[Token]) -> list[Token]:
-    """Return the tokens with braces around exponents that have a sign or brackets."""
-    for i in [k for k, token in enumerate(found[:-1]) if token.text == "^"][::-1]:
-        last = first = i + 1 + (found[i + 1].text in "+-")
-        depth = 0
-        while last < len(found):
-            depth += (found[last].text == "(") - (found[last].text == ")")
-            last += 1
-            if depth <= 0:
-                break
-        bracketed = first == i + 1 and found[first].text == "("
-        if first > i + 1 or bracketed:
-            inside = found[first + 1 : last - 1] if bracketed else found[i + 1 : last]
-            found[i + 1 : last] = braced(inside, found[i].at)
-    return found
-
-
-def _word(word: str, primes: int, at: int, behind: str, is_known: Callable[[Letter], bool]) -> list[Token]:
-    """Return the tokens of a name or function in plain notation."""
-    if word in FUNCTIONS and (behind == "(" or word in NUMBERED_FUNCTIONS):
-        return _placed(rf"\operatorname{{{word}}}", at) if word == "sqrt" else [Token("macro", word, at)]
-    letter = of_word(word).dotted(primes)
-    if letter is None:
-        raise Unread("there are too many primes here", at)
-    singles = [Letter(one) for one in word]
-    if not primes and word.isalpha() and not is_known(letter) and all(map(is_known, singles)):
-        return [Token("letter", one, at + k) for k, one in enumerate(word)]
-    return _placed(letter.latex, at)
-
-
-def _placed(latex: str, at: int) -> list[Token]:
+def placed(latex: str, at: int) -> list[Token]:
     """Return the tokens of some LaTeX, all at one given position."""
     return [replace(token, at=at) for token in _pieces(latex, 0)]
