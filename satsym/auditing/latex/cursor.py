@@ -18,7 +18,7 @@ from satsym.auditing.latex.words import (
     RELATIONS,
     UPRIGHT,
 )
-from satsym.formula.tree import Call, Equality, Node, Pow, Sym
+from satsym.formula.tree import Call, Equality, Grid, Node, Pow, Sym, symbols, walk
 from satsym.wording import printable
 
 CONSTANT = "constant"
@@ -162,6 +162,33 @@ class Cursor(ABC):
         elif power and isinstance(node, Call) and node.function == "raised":
             node = node.arguments[0]
         return self._reading.letters.get(node.name) if isinstance(node, Sym) else None
+
+    def _is_matrix(self, node: Node) -> bool:
+        """Return whether an expression is a bold capital letter, a power of it, or a transpose."""
+        if isinstance(node, Call):
+            return node.function == "transpose"
+        base = node.base if isinstance(node, Pow) else node
+        return isinstance(base, Sym) and base.name[:1].isupper() and self._is_vector(base)
+
+    def _has_matrix(self, node: Node) -> bool:
+        """Return whether an expression contains a vector, a matrix or a capital letter."""
+        return self._is_vector(node) or any(name[:1].isupper() for name in symbols(node))
+
+    def _is_vector(self, node: Node) -> bool:
+        """Return whether an expression contains letters that are typeset as vectors, or a matrix."""
+        if isinstance(node, Call) and node.function == "diff":
+            return any(map(self._is_vector, node.arguments))
+        if isinstance(node, Call) and node.function in ("d", "value", "raised", "differential"):
+            return self._is_vector(node.arguments[0])
+        if isinstance(node, Call):
+            return node.function in ("cross", "transpose", "gradient", "curl")
+        letters = self._reading.letters
+        return any(
+            isinstance(part, Grid)
+            or part == Sym("nabla")
+            or (isinstance(part, Sym) and part.name in letters and letters[part.name].bold)
+            for _, part in walk(node)
+        )
 
     def _script(self) -> list[Token]:
         """Read the subscript or superscript after ``^`` or ``_``."""

@@ -15,7 +15,7 @@ from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import END, Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FUNCTIONS
-from satsym.formula.tree import Add, Call, Grid, Node, Pow, Sym, Text, constant, symbols
+from satsym.formula.tree import Add, Call, Grid, Mul, Node, Pow, Sym, Text, constant, symbols
 
 _OF_SETS = frozenset(("given", "both", "equal", *words.RELATIONS.values()))
 """Functions of which braces around them make a set."""
@@ -27,6 +27,8 @@ class EnclosedCursor(RefusalCursor):
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
         """Return an expression evaluated at the point that is written below a bar."""
         places = self._condition(script, at)
+        if isinstance(places, Mul) and all(isinstance(one, Sym) and one.name[-1:].isdigit() for one in places.factors):
+            raise Unread("this space could separate two entries or two factors", at)
         return Call("value", (base, *listed(places)))
 
     def _condition(self, part: Sequence[Token], at: int) -> Node:

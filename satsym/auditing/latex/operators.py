@@ -13,7 +13,7 @@ from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import END, Token, Unread, environment, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
-from satsym.formula.tree import ZERO, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols, walk
+from satsym.formula.tree import ZERO, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols
 from satsym.wording import printable
 
 
@@ -341,25 +341,18 @@ class OperatorCursor(QuotientCursor):
                     raise Unread("a product of vectors needs a vector on both sides", sign.at)
                 return product_of([left, *right])
             right.append(self._factor())
+        while self._is_matrix(right[-1]) and self._begins_factor(self._peek()):
+            begin = self._i
+            factor = self._factor()
+            if not self._is_vector(factor):
+                self._i = begin
+                break
+            if product == "dot":
+                raise Unread("several products of vectors in a row need brackets", sign.at)
+            right.append(factor)  # r x (A b), since a matrix stands before the vector that it turns
+        if product == "dot" and self._is_matrix(right[-1]) and self._peek().is_macro("cdot"):
+            raise Unread("several products of vectors in a row need brackets", self._peek().at)
         return Call(product, (left, product_of(right)))
-
-    def _has_matrix(self, node: Node) -> bool:
-        """Return whether an expression contains a vector, a matrix or a capital letter."""
-        return self._is_vector(node) or any(name[:1].isupper() for name in symbols(node))
-
-    def _is_vector(self, node: Node) -> bool:
-        """Return whether an expression contains letters that are typeset as vectors, or a matrix."""
-        if isinstance(node, Call) and node.function in ("d", "diff", "value", "raised", "differential"):
-            return self._is_vector(node.arguments[0])
-        if isinstance(node, Call):
-            return node.function in ("cross", "transpose", "gradient", "curl")
-        letters = self._reading.letters
-        return any(
-            isinstance(part, Grid)
-            or part == Sym("nabla")
-            or (isinstance(part, Sym) and part.name in letters and letters[part.name].bold)
-            for _, part in walk(node)
-        )
 
 
 def shows_transposition(terms: Sequence[Node]) -> bool:

@@ -71,13 +71,14 @@ class SumCursor(EnclosedCursor):
             if depth < 0:
                 break
             here = self._i
-            if depth == 0 and here > begin and is_differential(now):
+            if depth == 0 and is_differential(now):
                 volume = self._volume()
                 letters = list(self._variables()) if volume is None else []
                 ends = self._peek() is END or self._peek().is_sign("+-)]")
                 if ends and (volume or (all(letters) and len(letters) in (1, words.INTEGRALS[token.text]))):
-                    along = self._found[here - 1].text == "cdot"
-                    tree = self._inner(self._found[begin : here - along], token.at)
+                    along = here > begin and self._found[here - 1].text == "cdot"
+                    integrand = self._found[begin : here - along]
+                    tree = self._inner(integrand, token.at) if integrand else Num(Fraction(1))
                     over = [volume] if volume else [self._symbol(letter, now.at) for letter in letters if letter]
                     parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
