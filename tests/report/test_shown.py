@@ -18,6 +18,7 @@ from satsym.report.results.studies import numbers
 from satsym.report.results.study_table import path_of
 from satsym.report.terminal.comparison import comparison_text, specs_of
 from satsym.report.terminal.solution import solution_text
+from satsym.report.terminal.study import study_text
 from satsym.solvers import solve
 
 KILOMETRES = ("km", "km/s", "rad", "rad/s")
@@ -67,6 +68,17 @@ def test_comparisons_leave_units_out_where_the_results_do() -> None:
     found = [compare([instance.load(name)])[0] for name in ("return-to-orbit", "soft-return")]
     assert "km" not in comparison_text(found)
     assert [v.unit for v in specs_of(found)[0].states] == ["1", "1", "1", "1"]
+
+
+@pytest.mark.parametrize(
+    ("varied", "unit"), [({"initial.r": (1.0, 1.1, 2)}, ""), ({"parameters.sigma": (1.0, 2.0, 2)}, " [km**2/s**3]")]
+)
+def test_the_worst_cases_have_a_unit_only_where_a_solution_has_one(
+    varied: dict[str, tuple[float, float, int]], unit: str, tmp_path: Path
+) -> None:
+    found = satsym.study("return-to-orbit", tmp_path / "study", vary=varied, certificate="none")
+    head = next(line for line in study_text(found.summary).splitlines() if "command" in line)
+    assert head.split("  ")[-2].strip() == f"objective{unit}"
 
 
 @pytest.mark.parametrize(

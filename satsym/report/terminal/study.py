@@ -30,7 +30,7 @@ def study_text(found: Mapping[str, Any]) -> str:
     failed = found["rows"] - found["statuses"].get(Status.CONVERGED.value, 0)
     lines = [
         say(
-            "<name>, model <model>: <each> for <rows>, varying <varied>",
+            "<name>, model <model>: study of <rows> (<each>), varying <varied>",
             name=found["instance"],
             model=found["model"],
             each=found["each"],
@@ -51,7 +51,7 @@ def study_text(found: Mapping[str, Any]) -> str:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
         lines += ["", say("cases with the worst objective:")]
         case, objective, reproduce = each("case", "objective", "command")
-        unit = found["units"].get("objective") or "1"
+        unit = "1" if found.get("multiples") else found["units"].get("objective") or "1"
         head = (case, objective if unit == "1" else f"{objective} [{unit}]", reproduce)
         lines += table([head, *rows], right=(0, 1))
     if found["failures"]:
