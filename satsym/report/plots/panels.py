@@ -119,7 +119,7 @@ def _remark(scene: Scene, series: Series, shown: Reading) -> str:
         return ""
     last = float(known[-1])
     last = last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0
-    return say("final value <value>", value=decimal(number(last, 5)))
+    return say("final value <value>", value=f"{decimal(number(last, 5))} {unit_text(shown.unit)}".rstrip())
 
 
 def _of_pi(multiple: float) -> str:

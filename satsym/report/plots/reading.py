@@ -34,7 +34,8 @@ class Reading:
     """A quantity in the form in which it is shown."""
 
     label: str
-    """Symbol with the unit of all numbers."""
+    unit: str
+    """Symbol with the unit of all numbers, and this unit."""
     values: Array
     reference: Array | None
     free: Array | None
@@ -113,6 +114,7 @@ class _Counted:
         last = datum if isinstance(datum, float) else float(datum[-1])
         return Reading(
             label=labelled(self.symbol, measure.unit),
+            unit=measure.unit,
             values=(series.values - datum) * self.factor * scale,
             reference=placed(series.reference),
             free=placed(series.free),
