@@ -284,7 +284,7 @@ def convergence(scene: Scene) -> Figure | None:
     rows = sum(drawn) // columns
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 4.1 if rows == 1 else 6.6)
     places = iter(page.subplots(rows, columns, squeeze=False).flat)
-    saying = [_of_cost(scene, last), _of_residual(bool(begun.size))]
+    saying = [_of_cost(scene, last, drawn[0]), _of_residual(bool(begun.size))]
     if first:
         said = say("the last <shown> of <whole> iterations", shown=len(at), whole=len(history))
         saying[1] = f"{saying[1][0]}\n{said}", saying[1][1]
@@ -311,12 +311,14 @@ def _last_phases(begun: NDArray[np.intp], residuals: Array) -> int:
     return far[0] if far else whole - MOST_DRAWN
 
 
-def _of_cost(scene: Scene, last: float) -> tuple[str, str]:
-    """Return title and label of the panel on the cost."""
+def _of_cost(scene: Scene, last: float, drawn: bool) -> tuple[str, str]:
+    """Return title and label of the panel on the cost, or of the cost alone where no panel is drawn."""
     unit, status = scene.spec.objective_unit or "1", scene.result.status
     if status.answered:
         final = f"{decimal(number(last, 10))} {unit_text(unit)}".rstrip()
-        title = say("final objective <value>" if scene.spec.maximise else "final cost <value>", value=final)
+        cost = "final objective <value>" if scene.spec.maximise else "final cost <value>"
+        distance = f"distance from the {cost}"
+        title = say(distance if drawn else cost, value=final)
     else:
         nothing = "no objective: <status>" if scene.spec.maximise else "no cost: <status>"
         title = say(nothing, status=message(status.value))
