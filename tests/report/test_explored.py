@@ -186,6 +186,11 @@ def test_what_authors_write_ends_no_script(returned: Solution) -> None:
         (r"$\Delta$$r$ [km]", "Δr [km]"),
         ("a < b & c", "a &lt; b &amp; c"),
         (r"$r$$\,\cos\,$$\theta$", "r cos θ"),
+        (r"$\lambda_{q_{\max}}$", "λ<sub>q<sub>max</sub></sub>"),
+        (r"$\ell - \ell(t_0)$", "ℓ \N{MINUS SIGN} ℓ(t<sub>0</sub>)"),
+        (r"$10^{-3}$", "10<sup>\N{MINUS SIGN}3</sup>"),
+        (r"$\sqrt{u_1^2 + u_2^2}$", "√(u<sub>1</sub><sup>2</sup> + u<sub>2</sub><sup>2</sup>)"),
+        (r"$\mathcal{E}$", "\N{SCRIPT CAPITAL E}"),
     ],
 )
 def test_labels_are_shown_without_scripts(label: str, html: str) -> None:

@@ -40,6 +40,9 @@ _UPRIGHT = re.compile(r"\\mathrm\{([^{}\\]*)\}")
 _BRACKET = re.compile(r"\\[bB]igg?([lr])(?![A-Za-z])")
 _BEFORE_A_SIGN = frozenset("=,([{<>≤≥|")
 _FUNCTIONS = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh exp log ln sgn det rank".split())
+_ACCENTS = {"˙": "\N{COMBINING DOT ABOVE}", "¨": "\N{COMBINING DIAERESIS}", "¯": "\N{COMBINING MACRON}"}
+_ACCENTS |= {"^": "\N{COMBINING CIRCUMFLEX ACCENT}", "~": "\N{COMBINING TILDE}"}
+_BETWEEN = frozenset("+−-=")
 _OPERATOR = re.compile(r"\\operatorname\{([^{}\\]*)\}")
 
 
@@ -49,6 +52,40 @@ def math(tex: str, *, block: bool = False) -> Markup:
 
     A formula that the converter cannot read is shown as its LaTeX code.
     """
+    element = _converted(tex, block)
+    return tag("code", tex) if element is None else Markup(Xml.tostring(element, encoding="unicode"))
+
+
+def indexed(tex: str) -> Markup:
+    """Return a formula as text with the tags ``sub`` and ``sup``, for places that show no other markup."""
+    element = _converted(tex, block=False)
+    return joined(tex) if element is None else _indexed(element)
+
+
+def _indexed(element: Xml.Element) -> Markup:
+    inside = [_between(part) if k and part.text in _BETWEEN else _indexed(part) for k, part in enumerate(element)]
+    match element.tag:
+        case "msub" | "msup" | "msubsup":
+            names = {"msub": ("sub",), "msup": ("sup",), "msubsup": ("sub", "sup")}[element.tag]
+            return joined(inside[0], *(tag(name, part) for name, part in zip(names, inside[1:], strict=True)))
+        case "mover":
+            return joined(inside[0], _ACCENTS.get(inside[1], inside[1]))
+        case "msqrt":
+            return joined("\N{SQUARE ROOT}(", *inside, ")")
+        case "mfrac":
+            return joined(*inside, by="/")
+        case "mspace":
+            return Markup("\N{THIN SPACE}")
+    return joined(element.text or "", *inside)
+
+
+def _between(sign: Xml.Element) -> Markup:
+    """Return a sign with spaces around it if it stands between two terms."""
+    return joined(sign.text or "") if sign.get("form") == "prefix" else joined(" ", sign.text or "", " ")
+
+
+def _converted(tex: str, block: bool) -> Xml.Element | None:
+    """Return a formula as MathML; ``None`` if the converter cannot read it."""
     from latex2mathml import exceptions
     from latex2mathml.converter import convert_to_element
 
@@ -59,7 +96,7 @@ def math(tex: str, *, block: bool = False) -> Markup:
     try:
         element = convert_to_element(plain, display="block" if block else "inline")
     except refusals:
-        return tag("code", tex)
+        return None
     element.attrib.pop("xmlns", None)
     for part in element.iter():
         # characters come as references; serialising escapes whatever they stand for
@@ -76,7 +113,7 @@ def math(tex: str, *, block: bool = False) -> Markup:
                 and before.text in _BEFORE_A_SIGN
             ):
                 sign.set("form", "prefix")  # else it is set as between two terms
-    return Markup(Xml.tostring(element, encoding="unicode"))
+    return element
 
 
 _PIECES = re.compile(r"\$([^$]+)\$|\\\[(.+?)\\\]|\\(?:eq)?ref\{([^{}]*)\}", re.DOTALL)

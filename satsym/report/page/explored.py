@@ -7,9 +7,9 @@ such controls contain these functions, which are computed here.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.report.display import engineering, labelled, length_scale, norm_text, number, plain, unit_text
+from satsym.report.html.markup import indexed
 from satsym.report.plots import series, style
 from satsym.report.plots.reading import Reading, box, read
 from satsym.report.plots.scene import Scene
@@ -37,17 +38,6 @@ GRID = 61
 """Number of points along each axis of the grid of forbidden regions."""
 THRUST = 0.2
 """Length of the longest thrust arrow, relative to half the size of the picture."""
-
-_NAMES = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau phi chi psi omega"
-_GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξπρστφχψω", strict=True))
-_GREEK |= {"Delta": "Δ", "Omega": "Ω", "Gamma": "Γ", "varphi": "φ", "cos": "cos", "sin": "sin"}
-_ACCENTS = {"dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}"}
-_FORMULA = re.compile(r"\$([^$]*)\$")
-_BARE = re.compile(r"\\(?:mathrm|mathbf|text)\s*\{([^{}]*)\}")
-_ACCENT = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[A-Za-z]))")
-_NAME = re.compile(r"\\([A-Za-z]+) *")
-_INDEX = re.compile(r"([_^])(?:\{([^{}]*)\}|(.))")
-_TAGS = {"_": "sub", "^": "sup"}
 
 LINEAR = 1e-9
 """Largest deviation of H from a straight line, relative to its change, at which H counts as linear in a control."""
@@ -362,28 +352,7 @@ def _digits(value: float) -> float:
 
 def shown(label: str) -> str:
     r"""Return a label such as ``$\dot\theta$ [rad/s]`` as HTML with the tags ``sub`` and ``sup``."""
-    text = label.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
-    return " ".join(_FORMULA.sub(lambda found: _formula(found[1]), text).split())
-
-
-def _with_roots(latex: str) -> str:
-    """Return a formula whose roots are parentheses after a sign, as ``√(x + y)``."""
-    while (begin := latex.find(r"\sqrt{")) >= 0:
-        depth, end = 1, begin + len(r"\sqrt{")
-        while depth and end < len(latex):
-            depth += {"{": 1, "}": -1}.get(latex[end], 0)
-            end += 1
-        inside = latex[begin + len(r"\sqrt{") : end - 1]
-        latex = f"{latex[:begin]}\N{SQUARE ROOT}({inside}){latex[end:]}"
-    return latex
-
-
-def _formula(latex: str) -> str:
-    text = _BARE.sub(r"\1", _with_roots(latex).replace(r"\,", "\N{THIN SPACE}").replace(r"\!", ""))
-    text = _ACCENT.sub(lambda found: (found[2] or found[3]) + " " + _ACCENTS[found[1]], text)
-    text = _NAME.sub(lambda found: _GREEK.get(found[1], found[1]), text)
-    for accent in _ACCENTS.values():
-        text = text.replace(" " + accent, accent)
-    while _INDEX.search(text):
-        text = _INDEX.sub(lambda found: f"<{_TAGS[found[1]]}>{found[2] or found[3]}</{_TAGS[found[1]]}>", text)
-    return text.replace("{", "").replace("}", "")
+    pieces = label.split("$")
+    return " ".join(
+        "".join(indexed(piece) if k % 2 else escape(piece, quote=False) for k, piece in enumerate(pieces)).split()
+    )
