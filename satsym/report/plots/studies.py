@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.formula.writing import GREEK
 from satsym.instance.numbers import SIDES, Table
 from satsym.report import display
 from satsym.report.display import labelled, plain
@@ -254,8 +255,7 @@ def _failures(numbers: Numbers) -> Figure:
     return page
 
 
-GREEK = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi rho sigma tau phi chi psi omega".split()
-_NAME = re.compile(rf"({'|'.join(GREEK)}|[A-Za-z])_?(\d+|[A-Za-z])?((?:_d?dot)?)")
+_NAME = re.compile(rf"({'|'.join(sorted(GREEK))}|[A-Za-z])_?(\d+|[A-Za-z])?((?:_d?dot)?)")
 _AT = {
     Table.INITIAL.value: "(t_0)",
     Table.FINAL.value: "(t_f)",
