@@ -69,3 +69,12 @@ def test_paths_and_long_words_are_never_broken(monkeypatch: pytest.MonkeyPatch) 
     told = with_files("summary", [folder / "a.png", folder / "b.png"])
     assert f"  written to {folder}:\n  a.png, b.png" in told
     assert wrapped("y" * 90)[-1].strip() == "y" * 90
+
+
+def test_a_long_name_is_broken_where_all_columns_then_fit_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    long = "second variation positive with respect to arc lengths and directions"
+    lines = table([("condition", "measured", "limit"), (long, "1e-12", "1e-09"), ("short", "0", "1e-08")], right=(1,))
+    assert len([line for line in lines if "condition" in line]) == 1
+    assert max(map(len, lines)) <= 80
+    assert " ".join(" ".join(lines).split()).startswith("condition measured limit second variation positive")

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 GAP = "  "
 WIDEST, NARROWEST = 100, 40
 """Largest and smallest width of paragraphs, in characters."""
-SENTENCE = 16
-"""Smallest width of a column of sentences, in characters."""
+SENTENCE, SENTENCES = 16, 40
+"""Smallest width of a column of sentences, if it has room for few words only and if all columns fit beside it."""
 
 
 def room() -> int | None:
@@ -91,12 +91,14 @@ def _narrowed(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -
 
 
 def _with_room(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -> Sequence[Sequence[str]]:
-    """Break the first column over several lines, where otherwise no other column would fit beside it."""
+    """Break the first column over several lines, where this makes room for all other columns, or for any of them."""
     limit = room()
     if limit is None or len(kept) < 2:
         return rows
     first, *others = kept
-    left = limit - indent - len(GAP) - max(_width(rows, i) for i in others)
+    left = limit - indent - sum(len(GAP) + _width(rows, i) for i in others)
+    if left < SENTENCES:
+        left = limit - indent - len(GAP) - max(_width(rows, i) for i in others)
     if left < SENTENCE or _width(rows, first) <= left:
         return rows
     found: list[Sequence[str]] = []
