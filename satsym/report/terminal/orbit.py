@@ -69,7 +69,7 @@ def _elements(found: Survey, length: str, time: str) -> list[str]:
         (say("period"), orbit.period, time),
         ("", None if readable in (time, "1") or orbit.period is None else own / factor, readable),
         (say("energy"), orbit.energy, _squared(length, time)),
-        (say("angular momentum"), momentum, _per(f"{length}^2" if length != "1" else "1", time)),
+        (say("angular momentum"), momentum, _per(f"{length}**2" if length != "1" else "1", time)),
         (say("hyperbolic excess speed"), orbit.excess_speed, speed),
         (say("inclination"), _degrees(orbit.inclination), "deg"),
         (say("longitude of the node"), _degrees(orbit.node), "deg"),
@@ -195,4 +195,4 @@ def _per(length: str, time: str) -> str:
 
 
 def _squared(length: str, time: str) -> str:
-    return "" if length == "1" else f"{length}^2" if time == "1" else f"{length}^2/{time}^2"
+    return "" if length == "1" else f"{length}**2" if time == "1" else f"{length}**2/{time}**2"
