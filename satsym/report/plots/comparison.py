@@ -179,9 +179,7 @@ def _over_time(
             for name, impulse in sudden
             if impulse
         ]
-        axes.text(
-            0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=style.points(8.5)
-        )
+        axes.set_title("\n".join([meaning, *said]))
     axes.set_xlabel(display.labelled("$t$", unit))
     symbol = display.formula(variable.latex, variable.symbol)
     axes.set_ylabel(display.labelled(rf"$\Delta${symbol}" if apart else symbol, measure.unit))

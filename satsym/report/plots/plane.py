@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from satsym.report import display
+from satsym.report.display import number
 from satsym.report.plots import legend, style
 from satsym.report.said import decimal, message, say
-from satsym.report.terminal.table import figure
 from satsym.spec import ProblemSpec
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
     axes.plot(away.real, away.imag, **COMPUTED)
     axes.plot([0.0], [0.0], **ONE)
     axes.locator_params(axis="x", nbins=2)  # each tick carries its power of ten
-    furthest, likely = (decimal(figure(value, 2)) for value in (float(np.abs(away).max()), expected))
+    furthest, likely = (decimal(number(value, 2)) for value in (float(np.abs(away).max()), expected))
     axes.set_title(say("near 1: at most <furthest> from 1 (<likely> expected)", furthest=furthest, likely=likely))
     axes.set_xlabel(r"$\mathrm{Re}\,\mu - 1$")
     axes.set_ylabel(r"$\mathrm{Im}\,\mu$")

@@ -16,7 +16,7 @@ from satsym.report.plots.reading import BURIED, ROUNDING, box
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.space import surroundings
 from satsym.report.plots.space.surroundings import NOTHING, Surroundings
-from satsym.report.plots.space.views import View, from_aside, views
+from satsym.report.plots.space.views import View, few_ticks, from_aside, views
 from satsym.report.said import say
 
 if TYPE_CHECKING:
@@ -219,7 +219,7 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
         return
     axes.set_xlabel(labelled(names[0], measure.unit))
     axes.set_ylabel(labelled(names[1], measure.unit))
-    _few_ticks(axes)
+    few_ticks(axes)
 
 
 def _without_ticks(axes: Axes, orbit: Orbit, view: View, half: float, unit: str) -> None:
@@ -268,7 +268,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     _ends(axes, *(curve * scale))
     axes.set_xlabel(labelled(say("along-track"), measure.unit))
     axes.set_ylabel(labelled(say("radial"), measure.unit))
-    _few_ticks(axes)
+    few_ticks(axes)
 
 
 def _added(scene: Scene, place: Callable[[Array], Array]) -> Array | None:
@@ -360,11 +360,3 @@ def _ends(axes: Axes, across: Array, up: Array) -> None:
     known = np.flatnonzero(np.isfinite(across) & np.isfinite(up))
     axes.plot(across[known[:1]], up[known[:1]], color=style.STATE, **style.START)
     axes.plot(across[known[-1:]], up[known[-1:]], color=style.STATE, **style.END)
-
-
-def _few_ticks(axes: Axes) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    long = max(map(abs, axes.get_xlim())) >= 1e4
-    axes.xaxis.set_major_locator(MaxNLocator(3 if long else 5))
-    axes.yaxis.set_major_locator(MaxNLocator(5))

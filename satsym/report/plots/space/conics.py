@@ -11,7 +11,7 @@ from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
 from satsym.report import display
 from satsym.report.plots import legend, style
-from satsym.report.plots.space.views import View, views
+from satsym.report.plots.space.views import View, few_ticks, views
 from satsym.report.said import decimal, message, say
 from satsym.report.terminal.table import figure
 from satsym.status import BadInput
@@ -120,6 +120,7 @@ def panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
     axes.set_aspect("equal")
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
     axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
+    few_ticks(axes)
     for ray in drawn.asymptotes:
         axes.plot(*(view.axes @ ray * scale), **ASYMPTOTE)
     axes.plot(*(view.axes @ drawn.curve * scale), **CONIC)

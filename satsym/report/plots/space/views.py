@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.report.said import say
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 FLAT = 1e-6
 """Largest distance from a plane through the origin, relative to the size of a path, at which it counts as plane."""
@@ -72,6 +76,15 @@ def from_aside(labels: Sequence[str]) -> View:
     right = np.array([-np.sin(turn), np.cos(turn), 0.0])
     up = np.array([-np.sin(height) * np.cos(turn), -np.sin(height) * np.sin(turn), np.cos(height)])
     return View(np.vstack([right, up]), (labels[0], labels[1]), say("in space"), spatial=True)
+
+
+def few_ticks(axes: Axes) -> None:
+    """Set few ticks, so that the long numbers of the horizontal axis do not touch each other."""
+    from matplotlib.ticker import MaxNLocator
+
+    long = max(map(abs, axes.get_xlim())) >= 1e4
+    axes.xaxis.set_major_locator(MaxNLocator(3 if long else 5))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
 
 
 def _along_normal(path: Array, normal: Array) -> View:
