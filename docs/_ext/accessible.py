@@ -1,5 +1,6 @@
 """What the theme leaves out for people who hear a page or have no mouse, and what it breaks that belongs together."""
 
+import re
 from pathlib import Path
 
 from docutils import nodes
@@ -13,6 +14,8 @@ PUT_RIGHT = {
     '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
 }
 
+PERCENT = re.compile(r"(?<=\d) (?=%)")
+"""The space between a number and its sign, where no line breaks."""
 SHORT = 32
 """Most letters of a piece of code that stays on one line."""
 
@@ -27,13 +30,19 @@ def _put_right(app: Sphinx, failed: Exception | None) -> None:
 
 
 def _set(app: Sphinx, page: nodes.document, name: str) -> None:
-    """Keep short code on one line, so that options do not break at their hyphens, and typeset dashes."""
+    """Keep short code on one line, so that options do not break at their hyphens, and typeset dashes and percents."""
     for code in page.findall(nodes.literal):
         if len(code.astext()) <= SHORT:
             code["classes"].append("short")
+    for block in page.findall(nodes.literal_block):
+        if (text := block.astext()) == block.rawsource != text.rstrip():  # examples for doctest end with an empty line
+            block.rawsource = text.rstrip()
+            block[:] = [nodes.Text(text.rstrip())]
     for text in list(page.findall(nodes.Text)):
         if text.astext() == " -- ":  # before what autodoc says of a parameter
             text.parent.replace(text, nodes.Text(" \N{EN DASH} "))
+        elif PERCENT.search(text) and not isinstance(text.parent, (nodes.literal, nodes.literal_block)):
+            text.parent.replace(text, nodes.Text(PERCENT.sub("\N{NO-BREAK SPACE}", text)))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

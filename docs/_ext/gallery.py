@@ -9,15 +9,18 @@ import io
 import json
 import os
 import re
-from collections.abc import Iterator
-from contextlib import redirect_stderr, redirect_stdout
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
+from functools import wraps
 from html import escape
+from importlib import import_module
 from importlib.util import find_spec
 from itertools import chain, compress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import wrap
 from typing import Any
+from unittest.mock import patch
 
 import cards
 from sphinx.application import Sphinx
@@ -40,12 +43,22 @@ COMMANDS = {
     "compare": "lapan-coupling",
 }
 """What is asked of instances that are not solved."""
+FOUND = {"lqr": "regulator", "analyse": "analysis", "compare": "comparison"}
+"""What commands without a certificate give."""
 LONGEST = (
-    "shuttle-heating its-thesis-return-two-sided its-thesis-return lapan-coupling reorientation cart-pole "
-    "goddard-pressure transfer-fuel obstacle goddard shuttle"
+    "shuttle-heating its-thesis-return-two-sided ends-2-given-state reorientation transfer-fuel lapan-coupling "
+    "goddard-pressure return-in-slot return-above goddard obstacle gravity-gradient shuttle cart-pole chain"
 ).split()
 """Begun first, so that no processor waits for another in the end."""
 CODE = ("satsym.solvers", "satsym.analysis", "satsym.report.plots", "satsym.report.terminal", "satsym.report.page")
+ASKED = (
+    "satsym.solvers.solve",
+    "satsym.analysis.comparison.compare",
+    "satsym.analysis.regulator.feedback.designed",
+    "satsym.analysis.subject.survey",
+    "satsym.report.results.linear.attitudes",
+)
+"""Functions of an instance that take long."""
 OWN = hashlib.blake2b(b"".join(Path(one).read_bytes() for one in (__file__, cards.__file__))).hexdigest()
 """Digest of what writes the pages."""
 EXPLORED = ("transfer-fuel",)
@@ -62,6 +75,8 @@ COLUMNS = 96
 """Letters of a line of code on a page."""
 BEHIND = re.compile(r"((?:[^#\"]|\"[^\"]*\")+)(# .*)")
 """What a line of a file says, and the comment behind it."""
+SIZE, WHOLE = re.compile(r'<svg[^>]* width="([\d.]+)pt"'), 504.0
+"""The width of a picture, and that of a page, in points."""
 TAKEN = re.compile(r",\s+[\d.]+\s+m?s(?=\))")
 """How long solving took, which is another time each time."""
 
@@ -86,7 +101,7 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
         known = json.loads(said.read_text("utf-8"))
         if known["key"] == key or os.environ.get(KEPT):
             return known
-    with TemporaryDirectory() as out:
+    with TemporaryDirectory() as out, once():
         motion = command in ("solve", "simulate")
         text = printed([command, name, "--out", out, *(() if motion else ("--plot", *DRAWN))])
         pictures = cards.of_motion(case, Path(out)) if motion else cards.written(case, Path(out))
@@ -95,8 +110,8 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
         if uncontrolled:  # the picture shows what makes a solution impossible
             printed(["simulate", name, "--out", out])
             pictures = cards.of_motion(case, Path(out))
-    if explored:
-        printed(["report", name, "--interactive", "--html", str(folder / f"{name}.html")])
+        if explored:
+            printed(["report", name, "--interactive", "--html", str(folder / f"{name}.html")])
     for part, svg in pictures.items():
         (folder / f"{name}{part}.svg").write_text(themed(svg), "utf-8")
     known = {
@@ -115,6 +130,37 @@ def shown(name: str, folder: Path) -> dict[str, Any]:
     }
     said.write_text(json.dumps(known), "utf-8")
     return known
+
+
+@contextmanager
+def once() -> Iterator[None]:
+    """Compute what takes long but once for a page, although its command, its report and its card all ask for it."""
+    places = [name.rpartition(".") for name in ASKED]
+    functions = [getattr(import_module(module), function) for module, _, function in places]  # all, before any changes
+    with ExitStack() as stack:
+        for name, function in zip(ASKED, functions, strict=True):
+            stack.enter_context(patch(name, _remembered(function)))
+        yield
+
+
+def _remembered(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of the instance of a page that is computed at the first call; calls within it are of other ones."""
+    found: list[Any] = []
+    within: list[bool] = []
+
+    @wraps(function)
+    def asked(*arguments: Any, **named: Any) -> Any:
+        if within:
+            return function(*arguments, **named)
+        if not found:
+            within.append(True)
+            try:
+                found.append(function(*arguments, **named))
+            finally:
+                within.clear()
+        return found[0]
+
+    return asked
 
 
 def printed(arguments: list[str]) -> str:
@@ -136,7 +182,7 @@ def verdict(result: dict) -> str:
     """A line on what came of it."""
     if result.get("certificate"):
         return result["certificate"]["verdict"]
-    return result["status"]
+    return FOUND.get(result["command"], result["status"])
 
 
 def themed(svg: str) -> str:
@@ -165,7 +211,7 @@ def page(known: dict[str, Any], root: Path) -> str:
     parts = [
         f"---\norphan: true\n---\n\n{WRITTEN}# {titled(known)}\n",
         "Back to the [gallery](../gallery.md).\n",
-        *(f"{picture(known, part)}\n" for part in known["pictures"]),
+        *(f"{picture(known, part, root)}\n" for part in known["pictures"]),
         f"## Problem\n\n{about(root / known['source'])}\n\n{stated}{quantities(case)}",
         f"The instance `{name}` provides the numerical values:\n\n```toml\n{narrow(known['file'])}\n```\n",
         f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
@@ -218,11 +264,14 @@ def titled(known: dict[str, Any]) -> str:
     return raised(known["title"]).replace("<=", "≤").replace(">=", "≥")
 
 
-def picture(known: dict[str, Any], part: str) -> str:
-    """The element that shows one of its pictures."""
+def picture(known: dict[str, Any], part: str, root: Path) -> str:
+    """The element that shows one of its pictures, as wide as it was drawn: the letters of all have one size."""
     name, title = known["name"], escape(titled(known))
+    drawn = SIZE.search((root / "docs" / "_static" / "gallery" / f"{name}{part}.svg").read_text("utf-8"))
+    share = min(1.0, float(drawn[1]) / WHOLE)
+    wide = f" style='--drawn: {share:.0%}'" if share < 1.0 else ""
     said = f"Picture of {title}" if not part else f"{part[1:].capitalize()}: {title}"
-    image = f"<img src='../_static/gallery/{name}{part}.svg' alt='{said}' loading='lazy'>"
+    image = f"<img src='../_static/gallery/{name}{part}.svg' alt='{said}' loading='lazy'{wide}>"
     words = UNCONTROLLED if known["uncontrolled"] else EXPLORE.format(name) if known["explored"] else ""
     caption = f"<figcaption>{words}</figcaption>" if words else ""
     return f"```{{raw}} html\n<figure class='example'>{image}{caption}</figure>\n```\n"
