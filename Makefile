@@ -86,7 +86,7 @@ bench-models: $(VENV)/installed-dev  ## derive, generate and load 2,000 random m
 	$(BIN)/python -m tests.bench.models --processes 2
 
 docs: $(VENV)/installed-docs  ## build the documentation in docs/_build, with warnings as errors
-	$(BIN)/python -m sphinx -q -W --keep-going docs docs/_build/html
+	$(BIN)/python -m sphinx -q -W --keep-going -j auto docs docs/_build/html
 	echo "docs/_build/html/index.html"
 
 check-pages: $(VENV)/installed-pages docs  ## check the accessibility of the pages (axe, with the system's Chromium)

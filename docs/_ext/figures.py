@@ -77,7 +77,7 @@ def free_time(page: Any, style: Any) -> None:
     body = satsym.Instance.of("double_integrator_energy", initial=start, final=rest, tf=2.0)
     effort = np.array([satsym.solve(body.with_(tf=float(span))).objective for span in spans])
     place.plot(spans, effort, "o-", color=style.BLUE, label="effort alone")
-    place.plot(spans, effort + 0.2 * spans, "o-", color=style.VERMILION, label="effort and 0.2 a second")
+    place.plot(spans, effort + 0.2 * spans, "o-", color=style.VERMILION, label="effort plus 0.2 per second")
     place.set_xlabel("final time [s]")
     place.set_ylabel("cost")
     place.legend(frameon=False)
