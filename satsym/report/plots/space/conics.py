@@ -40,6 +40,7 @@ NEAREST: dict[str, Any] = {
 FARTHEST: dict[str, Any] = {"marker": "^", "markersize": 7.0, "color": style.GREEN, "linestyle": "none", "zorder": 4.0}
 CONIC: dict[str, Any] = {"color": style.GREY, "linewidth": 1.1, "linestyle": (0, (5, 3)), "zorder": 2.1}
 ASYMPTOTE: dict[str, Any] = {"color": style.GREY, "linewidth": 0.9, "linestyle": ":", "zorder": 1.9}
+RING: dict[str, Any] = {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}
 SIDE = 5.4
 """Side of a panel, in inches."""
 
@@ -131,7 +132,7 @@ def panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
         (drawn.empty, EMPTY),
         (drawn.nearest, NEAREST),
         (drawn.farthest, FARTHEST),
-        (drawn.start, {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}),
+        (drawn.start, RING),
     )
     for point, look in marks:
         if point is not None:
@@ -155,8 +156,7 @@ def _entries(found: Survey, drawn: Drawn) -> list[legend.Entry]:
     entries: list[legend.Entry] = [] if once_round else [(legend.line(**CONIC), message(orbit.conic.value))]
     if drawn.travelled is not None:
         entries.append((legend.line(color=style.STATE, **style.MAIN), _flight(found)))
-    start = {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}
-    entries += [(legend.line(**start), say("start")), (legend.line(**CENTRE), say("centre, a focus"))]
+    entries += [(legend.line(**RING), say("start")), (legend.line(**CENTRE), say("centre, a focus"))]
     if drawn.empty is not None:
         entries.append((legend.line(**EMPTY), say("empty focus")))
     if drawn.nearest is not None:
