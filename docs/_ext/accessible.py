@@ -14,8 +14,8 @@ PUT_RIGHT = {
     '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
 }
 
-PERCENT = re.compile(r"(?<=\d) (?=%)")
-"""The space between a number and its sign, where no line breaks."""
+PERCENT, OPTION = re.compile(r"(?<=\d) (?=%)"), re.compile(r"(?<!\S)--(?=[a-z])")
+"""The space before a sign of percent, and the hyphens of an option, where no line breaks."""
 SHORT = 32
 """Most letters of a piece of code that stays on one line."""
 
@@ -41,8 +41,10 @@ def _set(app: Sphinx, page: nodes.document, name: str) -> None:
     for text in list(page.findall(nodes.Text)):
         if text.astext() == " -- ":  # before what autodoc says of a parameter
             text.parent.replace(text, nodes.Text(" \N{EN DASH} "))
-        elif PERCENT.search(text) and not isinstance(text.parent, (nodes.literal, nodes.literal_block)):
-            text.parent.replace(text, nodes.Text(PERCENT.sub("\N{NO-BREAK SPACE}", text)))
+        elif not isinstance(text.parent, (nodes.literal, nodes.literal_block, nodes.math, nodes.math_block)):
+            whole = OPTION.sub("-\N{WORD JOINER}-\N{WORD JOINER}", PERCENT.sub("\N{NO-BREAK SPACE}", text))
+            if whole != text:
+                text.parent.replace(text, nodes.Text(whole))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
