@@ -16,6 +16,7 @@ from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.report.html.markup import Markup, prose
 from satsym.report.page import answer
+from satsym.report.page.answer import typeset
 from satsym.report.page.derived import Derived
 from satsym.report.page.motion import SECONDS, SIDE, TURNS, motion
 from satsym.report.page.run import Given, overview, pictures, problem, render
@@ -102,15 +103,15 @@ def test_it_says_of_the_certificate_what_the_terminal_says(text: str, solution: 
     assert verdict_text(found).capitalize() in section
     for said, measured, limit, _ in condition_rows(found)[1:]:
         assert f"{said} {measured} {limit}".split() in printed
-        assert f'scope="row">{said}</th>{CELL}{measured}</td>{CELL}{limit}</td>' in section, said
+        assert f'scope="row">{said}</th>{CELL}{typeset(measured)}</td>{CELL}{typeset(limit)}</td>' in section, said
 
 
 def test_a_condition_that_failed_and_one_that_holds_are_told_apart_on_the_page() -> None:
     checks = (Check("kernels contradict each other", 1.0, 1e-9), Check("boundary residual", 1e-12, 1e-9))
     found = Certificate(Verdict.FAILED, 0.0, 0.0, 0.0, 0.0, 1.0, None, checks)
     shown = answer.certificate(found, instance.load("soft-return").model.spec, load("en"))
-    assert f"generated kernels do not agree with each other</th>{CELL}1</td>{CELL}1e-09</td><td>FAILED</td>" in shown
-    assert f"boundary conditions satisfied</th>{CELL}1e-12</td>{CELL}1e-09</td><td>\N{CHECK MARK}</td>" in shown
+    assert f"generated kernels do not agree with each other</th>{CELL}1</td>{CELL}1 × 10⁻⁹</td><td>FAILED</td>" in shown
+    assert f"boundary conditions satisfied</th>{CELL}1 × 10⁻¹²</td>{CELL}1 × 10⁻⁹</td><td>\N{CHECK MARK}</td>" in shown
     assert "elsewhere" not in shown, "said of certified answers only"
 
 
@@ -132,7 +133,7 @@ def test_the_problem_comes_first_and_the_derivation_after_what_it_leads_to(text:
 
 def test_bounds_and_ranges_are_stated_with_the_problem() -> None:
     page = problem(instance.load("return-to-geo"), None, (), load("en"))
-    assert re.search(rf'scope="row">u1</th>{CELL}-4e-08</td>{CELL}4e-08</td><td>km/s²</td>', page)
+    assert re.search(rf'scope="row">u1</th>{CELL}−4 × 10⁻⁸</td>{CELL}4 × 10⁻⁸</td><td>km/s²</td>', page)
     ranged = problem(instance.load("return-to-geo-window"), None, (), load("en"))
     assert re.search(rf'scope="row">theta</th>{CELL}0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
     assert "The motion lasts from 0 s to 86400 s." in page

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Enclosure, Outcome, Proof
-from satsym.report.display import capitalised, number, radical, unit_text
+from satsym.report.display import capitalised, number, radical, times_ten_to, unit_text
 from satsym.report.html.markup import Markup, joined, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import decimal, message, say
@@ -130,14 +130,25 @@ def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
     look = {k: {"class_": "number"} if k and _numeric(columns[k]) else {} for k in kept}
     head = tag("tr", *(tag("th", header[k], scope="col", **look[k]) for k in kept))
     lines = [
-        tag("tr", *(tag("td", row[k], **look[k]) if k else tag("th", row[k], scope="row") for k in kept))
+        tag("tr", *(tag("td", typeset(row[k]), **look[k]) if k else tag("th", row[k], scope="row") for k in kept))
         for row in body
     ]
     title = tag("caption", caption) if caption else Markup()
     return scrolled(tag("table", title, tag("thead", head), tag("tbody", *lines), class_="facts"))
 
 
-_NUMBER = re.compile(r"[-\N{MINUS SIGN}]?\d[\d.,]*(e[-+]?\d+)?( %)?")
+MINUS = "\N{MINUS SIGN}"
+_NUMBER = re.compile(rf"([-{MINUS}]?\d[\d.,]*)(e[-+]?\d+)?( %)?")
+
+
+def typeset(cell: str) -> str:
+    """Return a number with its sign and its power of ten as in print; other text is unchanged."""
+    found = _NUMBER.fullmatch(cell)
+    if not found:
+        return cell
+    mantissa, exponent, percent = found.groups()
+    power = times_ten_to(int(exponent[1:])) if exponent else ""
+    return f"{mantissa.replace('-', MINUS)}{power}{percent or ''}"
 
 
 def _numeric(column: Sequence[str]) -> bool:

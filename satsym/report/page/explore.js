@@ -284,7 +284,7 @@
   const tell = () => {
     const there = now();
     const unit = /\[(.*)\]/.exec(current.time)?.[1] ?? "";
-    stated.textContent = `${number(time)} ${unit}`.trim();
+    stated.textContent = `t = ${number(time)} ${unit}`.trim();
     slider.setAttribute("aria-valuetext", stated.textContent);
     reading.querySelectorAll("td[data-panel]").forEach((cell) => {
       const panel = current.panels[cell.dataset.panel];

@@ -302,7 +302,9 @@ def problem(instance: Instance, statement: Derived | None, values: Sequence[str]
         statement.statement() if statement else "",
         tag("h3", texts.get("page", "instance")),
         answer.table(texts.get("page", "conditions"), _conditions(instance, texts)),
-        answer.table(texts.get("page", "admissible"), rows) if len(rows := _admissible(instance)) > 1 else "",
+        answer.table(texts.get("page", "admissible"), rows)
+        if len(rows := _admissible(instance)) > 1
+        else tag("p", texts.get("page", "unbounded")),
         tag("p", _times(instance, texts)),
         _instance_file(instance, values, texts),
     )
