@@ -21,7 +21,7 @@ from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels, load
 from satsym.report import display
 from satsym.report.look import SIZES, Look
-from satsym.report.plots import curves, pictures, series, style
+from satsym.report.plots import curves, pages, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import Reading
 from satsym.report.plots.reading import read as read_all
@@ -491,6 +491,17 @@ def test_bounds_of_a_control_that_rests_are_in_sight() -> None:
     shown = read(quantity(np.zeros(5), lower=0.0, upper=700.0, from_zero=True))
     assert shown.low < 0.0
     assert shown.high > 700.0
+
+
+def test_final_values_have_the_units_of_their_axes() -> None:
+    scene = Scene.of(simulate(instances.load("return-to-geo")))
+    with style.applied():
+        page = pages.states(scene)
+    assert page is not None
+    for axes in page.axes:
+        unit = axes.get_ylabel().partition("[")[2].removesuffix("]")
+        assert unit
+        assert axes.get_title("right").endswith(f" {unit}")
 
 
 def test_an_angle_that_turns_is_marked_in_multiples_of_pi() -> None:
