@@ -316,9 +316,11 @@ def _of_cost(scene: Scene, last: float, drawn: bool) -> tuple[str, str]:
     unit, status = scene.spec.objective_unit or "1", scene.result.status
     if status.answered:
         final = f"{decimal(number(last, 10))} {unit_text(unit)}".rstrip()
-        cost = "final objective <value>" if scene.spec.maximise else "final cost <value>"
-        distance = f"distance from the {cost}"
-        title = say(distance if drawn else cost, value=final)
+        if scene.spec.maximise:
+            said = "distance from the final objective <value>" if drawn else "final objective <value>"
+        else:
+            said = "distance from the final cost <value>" if drawn else "final cost <value>"
+        title = say(said, value=final)
     else:
         nothing = "no objective: <status>" if scene.spec.maximise else "no cost: <status>"
         title = say(nothing, status=message(status.value))
