@@ -42,7 +42,8 @@ further cost that they lead to, but after PATIENCE at most. Those that are not s
 or path constraints separate the ways, it ends after PATIENCE, solved or not."""
 
 FRUITLESS = 4
-"""Number of starts of one kind after which the others of this kind are left out if none of them was solved."""
+"""Number of starts of one kind after which the others of this kind are left out if none of them was solved. Random
+motions that fail count for nothing else."""
 
 SOON = 25_000
 """Unknowns times iterations that the list of competitors takes at least, because starts of small programmes cost
@@ -105,7 +106,7 @@ def searched(
             costs.append(found.objective)
             stable += abs(motion(last).cost - found.objective) <= KEPT_COST * abs(found.objective)
             reached |= not lost
-        failed = 0 if reached else failed + (not plan.loosened)
+        failed = 0 if reached else failed + (not plan.loosened and not plan.sampled)
         if stable >= MOST_COSTS or len(costs) >= 2 * MOST_COSTS or failed >= failing or number + 1 >= STARTS:
             break
         if failed == DOUBTFUL and hopeless():
@@ -171,7 +172,7 @@ def _further(
         past.begun = number + 1
         if plan.arriving:  # such starts come in addition: they do not count against the others
             begun += limits.meter.spent - spent
-        else:
+        elif found.solved or not plan.sampled:
             quiet, solved = quiet + (1.0 if found.solved or patient else 0.5), solved + found.solved
         if not found.solved:
             yield Tried(plan, float("nan"))
