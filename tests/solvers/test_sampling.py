@@ -19,12 +19,12 @@ from satsym.solvers.search.starts import planning, sampling
 SHIPPED = ("linear-tangent", "transfer-fuel", "reorientation", "ends-3-given-time", "double-integrator-fuel")
 
 
-def sampled(case: Instance, most: int = 6) -> tuple[Programme, list[sampling.Sample]]:
+def sampled(case: Instance, group: int = 1) -> tuple[Programme, list[sampling.Sample]]:
     controls = controls_of(case)
     assert controls is not None
     duration = first_duration(case, controls)
     programme = Programme(case, controls, [np.linspace(0.0, 1.0, 41)], sizes_of(case, controls, duration))
-    return programme, sampling.sampled(programme, most)
+    return programme, sampling.sampled(programme, group)
 
 
 @pytest.mark.parametrize("name", SHIPPED)

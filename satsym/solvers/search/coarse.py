@@ -22,7 +22,7 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import planning
 from satsym.solvers.search.starts.planning import Plan
-from satsym.solvers.search.starts.sampling import Sample, begun_from, sampled
+from satsym.solvers.search.starts.sampling import GROUPS, Sample, begun_from, sampled
 from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURATION
 
 STARTS = 48
@@ -91,7 +91,7 @@ def started(
     normed = any(norm.spot is not None for norm in controls.norms)
     smoothings = FIRST_SMOOTHINGS if normed else FIRST_SMOOTHINGS[-1:]
     programmes = [Programme(instance, controls, meshes, sizes, by, loose) for by in smoothings]
-    samples: list[Sample] | None = None
+    groups = dict[int, list[Sample]]()
     known = list[tuple[float, Found]]()
     for number, plan in enumerate(plans[first:], first):
         if limits.expired:
@@ -102,10 +102,10 @@ def started(
             bent = most < ITERATIONS and plan.drawn and plan.noise
             iterations = min(most, ASTRAY) if bent else most if number else ITERATIONS
             if plan.sampled:
-                samples = sampled(programmes[0], planning.SAMPLED) if samples is None else samples
-                if plan.sampled > len(samples):
+                sample = _sample(programmes[0], plan.sampled, groups)
+                if sample is None:
                     continue
-                found = _from_sample(programmes, samples[plan.sampled - 1], limits, iterations, known)
+                found = _from_sample(programmes, sample, limits, iterations, known)
             else:
                 found = _less_smoothed(programmes, plan, limits, iterations, known)
         yield number, plan, found
@@ -147,6 +147,24 @@ def _less_smoothed(
         start = free.unknown
     near = plan.timed or plan.arriving or plan.at_bound is not None
     return _smoothed_less(programmes, nlp.solve(programmes[0], start, limits, most, near), limits, most, known)
+
+
+def _sample(programme: Programme, number: int, groups: dict[int, list[Sample]]) -> Sample | None:
+    """Return the random motion of a number, counted from 1 through all groups; ``None`` if there are fewer.
+
+    Parameters
+    ----------
+    groups
+        The groups that were drawn, by their index; a new one is added.
+    """
+    place = number - 1
+    for group, (count, _) in enumerate(GROUPS):
+        if place < count:
+            if group not in groups:
+                groups[group] = sampled(programme, group)
+            return groups[group][place] if place < len(groups[group]) else None
+        place -= count
+    return None
 
 
 def _from_sample(

@@ -17,7 +17,7 @@ from satsym.instance import Instance
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import flow, followed, resting, wanted
-from satsym.solvers.search.starts import ends, revolutions
+from satsym.solvers.search.starts import ends, revolutions, sampling
 from satsym.solvers.search.transcription import Places
 
 WITHIN = 1e2
@@ -49,7 +49,7 @@ LENGTHS = (0.25, 4.0, 0.06)
 TURNS = (0, -1, 1, 2, 3)
 """Numbers of revolutions that are tried if the duration is free; -1 is one turn in the opposite direction."""
 
-SAMPLED = 8
+SAMPLED = sum(count for count, _ in sampling.GROUPS)
 """Number of starts that are random motions close to the end."""
 
 DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)

@@ -16,8 +16,9 @@ from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import wanted
 from satsym.solvers.search.starts import ends
 
-SAMPLES, STEPS = 1000, 128
-"""Number of random motions, and of the Runge-Kutta steps of each."""
+GROUPS, STEPS = ((3, 1000), (8, 4000)), 128
+"""Numbers of starts in each group, and of the random motions that they are chosen from: the second group is drawn if
+the search goes on so far, because the first starts led to several costs. Number of Runge-Kutta steps of each motion."""
 
 WEAKEST, STRONGEST, WAVES = 1e-3, 3.0, 4
 """Smallest and largest amplitude of random controls, relative to half their ranges or to their scales; number of
@@ -46,19 +47,20 @@ class Sample:
     v: Array
 
 
-def sampled(programme: Programme, most: int) -> list[Sample]:
-    """Return at most so many random motions that differ and come close to the final conditions, the closest first."""
+def sampled(programme: Programme, group: int) -> list[Sample]:
+    """Return random motions of a group that differ and come close to the final conditions, the closest first."""
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
-    rng = np.random.default_rng(0)
-    begun = np.repeat(np.array(instance.initial, float)[:, None], SAMPLES, 1)
+    most, count = GROUPS[group]
+    rng = np.random.default_rng(group)
+    begun = np.repeat(np.array(instance.initial, float)[:, None], count, 1)
     if instance.free:
         end = wanted(instance, instance.t0 + sizes.duration)
-        begun = np.array([ends.drawn(programme, seed, begun[:, 0], end)[0] for seed in range(1, SAMPLES + 1)]).T
-    lasting = np.full(SAMPLES, sizes.duration)
+        begun = np.array([ends.drawn(programme, seed, begun[:, 0], end)[0] for seed in range(1, count + 1)]).T
+    lasting = np.full(count, sizes.duration)
     if instance.tf is None:
-        lasting *= np.exp(rng.uniform(np.log(SHORTEST_SAMPLE), np.log(LONGEST_SAMPLE), SAMPLES))
+        lasting *= np.exp(rng.uniform(np.log(SHORTEST_SAMPLE), np.log(LONGEST_SAMPLE), count))
     times = instance.t0 + lasting * np.linspace(0.0, 1.0, STEPS + 1)[:, None]
-    u = _controls(programme, rng)
+    u = _controls(programme, rng, count)
     with np.errstate(all="ignore"):
         x = _motions(programme, times, begun, u)
         missed = _missed(programme, times[-1], x[-1])
@@ -67,27 +69,27 @@ def sampled(programme: Programme, most: int) -> list[Sample]:
     return [Sample(times[:, m], x[:, :, m].T, controls.variables(u[:, :, m].T)) for m in chosen]
 
 
-def _controls(programme: Programme, rng: np.random.Generator) -> Array:
-    """Return random controls within their set, shape (STEPS + 1, m, SAMPLES)."""
+def _controls(programme: Programme, rng: np.random.Generator, count: int) -> Array:
+    """Return random controls within their set, shape (STEPS + 1, m, count)."""
     controls, m = programme.controls, programme.controls.given
     share = np.linspace(0.0, 1.0, STEPS + 1)
     waves = np.array([np.cos(np.pi * k * share) / max(k, 1) for k in range(WAVES)])
-    amplitudes = np.exp(rng.uniform(np.log(WEAKEST), np.log(STRONGEST), SAMPLES))
+    amplitudes = np.exp(rng.uniform(np.log(WEAKEST), np.log(STRONGEST), count))
     low, high = controls.lower[:m], controls.upper[:m]
     bounded = np.isfinite(low) & np.isfinite(high)
     middle, scale = np.zeros(m), programme.sizes.variables[:m].copy()
     low, high = low[bounded], high[bounded]
     middle[bounded], scale[bounded] = 0.5 * (low + high), 0.5 * (high - low)
-    waved = (rng.normal(size=(m, SAMPLES, WAVES)) @ waves).transpose(2, 0, 1)
+    waved = (rng.normal(size=(m, count, WAVES)) @ waves).transpose(2, 0, 1)
     u = middle[:, None] + scale[:, None] * amplitudes * waved
     for place in controls.angles:
-        u[:, place] += rng.uniform(-np.pi, np.pi, SAMPLES)
+        u[:, place] += rng.uniform(-np.pi, np.pi, count)
     within = programme.instance.control_set.project(u.transpose(1, 0, 2).reshape(m, -1))
-    return np.asarray(within).reshape(m, STEPS + 1, SAMPLES).transpose(1, 0, 2)
+    return np.asarray(within).reshape(m, STEPS + 1, count).transpose(1, 0, 2)
 
 
 def _motions(programme: Programme, times: Array, begun: Array, u: Array) -> Array:
-    """Return states (STEPS + 1, n, SAMPLES) by Runge-Kutta steps of fourth order."""
+    """Return states (STEPS + 1, n, M) by Runge-Kutta steps of fourth order."""
     instance = programme.instance
     model, p = instance.model, instance.parameters
     x, found = begun, [begun]
