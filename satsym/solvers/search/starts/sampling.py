@@ -27,7 +27,7 @@ harmonic waves that they are made of."""
 SHORTEST_SAMPLE, LONGEST_SAMPLE = 0.4, 4.0
 """Shortest and longest duration of a random motion, relative to the initial guess, if the duration is free."""
 
-LEAST_DISTANCE, COMPARED = 0.15, 8
+SMALLEST_DISTANCE, COMPARED = 0.15, 8
 """Distance of two motions, relative to the ranges of the states in most of them, from which they are different starts.
 It is taken at every step that is a multiple of ``COMPARED``."""
 
@@ -139,7 +139,7 @@ def _different(shapes: Array, order: Sequence[int], most: int) -> list[int]:
         shapes = shapes / np.where(high > low, high - low, 1.0)
     chosen = list[int]()
     for m in order:
-        if all(np.abs(shapes[m] - shapes[other]).max() > LEAST_DISTANCE for other in chosen):
+        if all(np.abs(shapes[m] - shapes[other]).max() > SMALLEST_DISTANCE for other in chosen):
             chosen.append(m)
             if len(chosen) == most:
                 break
