@@ -19,7 +19,7 @@ from satsym.solvers.search import nlp
 from satsym.solvers.search.controls import Controls
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
-from satsym.solvers.search.sizes import sizes_of, wanted
+from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import planning
 from satsym.solvers.search.starts.planning import Plan
 from satsym.solvers.search.transcription import FREE, Function
@@ -35,12 +35,9 @@ class Missing(Programme):
     """Nonlinear programme that minimises half the squared deviation from the final conditions, in scaled units."""
 
     def __post_init__(self) -> None:
-        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + self.sizes.duration
         names = self.instance.model.spec.state_names
-        goal = wanted(self.instance, end)
         numbers = [isinstance(self.instance.final.get(name), float | int) for name in names]
         self.given = np.flatnonzero(numbers)
-        self.goal = goal[self.given]
         self.on_reference = [i for i, name in enumerate(names) if self.instance.final.get(name) == "reference"]
         self.factor = 0.0
         super().__post_init__()
@@ -76,13 +73,14 @@ class Missing(Programme):
         return self.missed(self._at(w, [self.count]))[:, 0]
 
     def missed(self, y: Array) -> Array:
-        """Return the deviations from the final conditions at local variables (l, M), in scaled units."""
-        others = self.points.ends(y)
-        size = self.sizes.states
-        others[: len(self.on_reference)] /= size[self.on_reference, None]
-        first = len(others) - self.points.inequalities
-        others[first:] *= others[first:].real > 0.0
-        return np.concatenate([(y[self.given] - self.goal[:, None]) / size[self.given, None], others])
+        """Return the deviations from the final conditions at local variables (l, M), in scaled units.
+
+        Ranges are left out, because :attr:`bounds` keep the final states within them.
+        """
+        states = [*self.given, *self.on_reference]
+        found = self.points.misses(y)[: len(self.given) + len(self.points.ends(y))]
+        found[: len(states)] /= self.sizes.states[states, None]
+        return found
 
     def _half(self, y: Array) -> Array:
         return np.asarray((self.missed(y) ** 2).sum(axis=0)[None] / 2.0)

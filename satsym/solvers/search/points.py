@@ -232,6 +232,24 @@ class Points:
             rows.append(np.broadcast_to(found[n : n + count].reshape(count, -1), (count, y.shape[1])))
         return np.concatenate(rows) if rows else np.empty((0, y.shape[1]), y.dtype)
 
+    def misses(self, y: Array) -> Array:
+        """Return the deviations from all final conditions, shape (k, M); terminal inequalities that hold have none.
+
+        The rows are those of given states, of :meth:`ends`, and of states whose final values have a range.
+        """
+        x, _, _, _ = self._parted(y)
+        given, ends, ranged = list[Array](), self.ends(y), list[Array]()
+        first = len(ends) - self.inequalities
+        ends[first:] *= ends[first:].real > 0.0
+        for row, name in zip(x, self.instance.model.spec.state_names, strict=True):
+            value = self.instance.final.get(name)
+            if isinstance(value, float | int):
+                given.append(row - value)
+            elif name in self.instance.ranges:
+                beyond = row - np.clip(row.real, *self.instance.ranges[name])
+                ranged.append(beyond * (beyond.real != 0.0))
+        return np.array([*given, *ends, *ranged]).reshape(-1, y.shape[1])
+
     @property
     def inequalities(self) -> int:
         """Return the number of terminal rows that are inequalities; they are the last ones."""

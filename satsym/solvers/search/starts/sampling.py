@@ -15,6 +15,7 @@ from satsym.arrays import Array
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import wanted
 from satsym.solvers.search.starts import ends
+from satsym.solvers.simulation.together import steps_together
 
 GROUPS, STEPS = ((3, 1000), (8, 4000)), 128
 """Numbers of starts in each group, and of the random motions that they are chosen from: the second group is drawn if
@@ -61,8 +62,10 @@ def sampled(programme: Programme, group: int) -> list[Sample]:
         lasting *= np.exp(rng.uniform(np.log(SHORTEST_SAMPLE), np.log(LONGEST_SAMPLE), count))
     times = instance.t0 + lasting * np.linspace(0.0, 1.0, STEPS + 1)[:, None]
     u = _controls(programme, rng, count)
+    halves = np.empty((2 * STEPS + 1, *u.shape[1:]))
+    halves[::2], halves[1::2] = u, 0.5 * (u[:-1] + u[1:])
     with np.errstate(all="ignore"):
-        x = _motions(programme, times, begun, u)
+        x = np.array([begun, *(step.end for step in steps_together(instance, begun, halves, lasting))])
         missed = _missed(programme, times[-1], x[-1])
     order = [m for m in np.argsort(missed) if np.isfinite(missed[m])]
     chosen = _different(x[::COMPARED].transpose(2, 0, 1), order, most)
@@ -88,26 +91,6 @@ def _controls(programme: Programme, rng: np.random.Generator, count: int) -> Arr
     return np.asarray(within).reshape(m, STEPS + 1, count).transpose(1, 0, 2)
 
 
-def _motions(programme: Programme, times: Array, begun: Array, u: Array) -> Array:
-    """Return states (STEPS + 1, n, M) by Runge-Kutta steps of fourth order."""
-    instance = programme.instance
-    model, p = instance.model, instance.parameters
-    x, found = begun, [begun]
-    for k in range(STEPS):
-        h, t, middle = times[k + 1] - times[k], times[k], 0.5 * (u[k] + u[k + 1])
-
-        def rate(t: Array, x: Array, u: Array) -> Array:
-            return np.asarray(model.dynamics_batch(t, x, u, p))
-
-        k1 = rate(t, x, u[k])
-        k2 = rate(t + h / 2, x + h / 2 * k1, middle)
-        k3 = rate(t + h / 2, x + h / 2 * k2, middle)
-        k4 = rate(t + h, x + h * k3, u[k + 1])
-        x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        found.append(x)
-    return np.array(found)
-
-
 def _missed(programme: Programme, t: Array, x: Array) -> Array:
     """Return the distance (M,) of states (n, M) from the final conditions, each relative to its spread over motions."""
     instance, n = programme.instance, len(x)
@@ -115,17 +98,8 @@ def _missed(programme: Programme, t: Array, x: Array) -> Array:
     y[:n], y[n + programme.controls.count] = x, t
     for row, one in enumerate(programme.free):
         y[n + programme.controls.count + 1 + row] = one.of(instance)
-    rows = list(programme.points.ends(y))
-    first = len(rows) - programme.points.inequalities
-    rows[first:] = [np.maximum(row, 0.0) for row in rows[first:]]
-    for i, name in enumerate(instance.model.spec.state_names):
-        value = instance.final.get(name)
-        if isinstance(value, float | int):
-            rows.append(x[i] - value)
-        elif name in instance.ranges:
-            rows.append(x[i] - np.clip(x[i], *instance.ranges[name]))
     total = np.zeros(len(t))
-    for row in rows:
+    for row in programme.points.misses(y):
         finite = row[np.isfinite(row)]
         spread = float(np.subtract(*np.quantile(finite, (0.75, 0.25)))) if len(finite) else 0.0
         total = total + (row / (spread or 1.0)) ** 2
