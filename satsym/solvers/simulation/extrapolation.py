@@ -97,6 +97,64 @@ def integrate(
     return pieces
 
 
+def integrate_each(
+    rates: Rates, begins: Array, ends: Array, starts: Array, tolerance: float, size: Array
+) -> list[Trajectory]:
+    """Integrate y' = rates(t, y) from many initial values at once, each from its own initial to its own final time.
+
+    Every motion has its own step size; all of them are evaluated together.
+
+    Parameters
+    ----------
+    rates
+        Function of times (M,) and values (d, M) that returns rates (d, M).
+    begins, ends
+        Initial and final times, shape (M,).
+    starts
+        Initial values, shape (d, M).
+    tolerance, size
+        As for :func:`integrate`.
+
+    Returns
+    -------
+    list of Trajectory
+        One trajectory for each of the M motions.
+
+    Raises
+    ------
+    NotFinite
+        If a motion does not reach its final time.
+    """
+    at, values, steps = begins.astype(float), starts.astype(float), ends - begins
+    found = [([t], [value]) for t, value in zip(at.tolist(), values.T.copy(), strict=True)]
+    column = together = len(SUBSTEPS) // 2
+    for _ in range(MOST_STEPS):
+        own = np.flatnonzero(at != ends)
+        if not len(own):
+            return [Trajectory(np.array(times), np.array(passed)) for times, passed in found]
+        left = ends[own] - at[own]
+        last = np.abs(steps[own]) >= np.abs(left) * (1.0 - 1e-12)
+        h = np.where(last, left, steps[own])
+        for column, (reached, change) in enumerate(leaps(rates, at[own], values[:, own], h, together)):
+            error = (change / (tolerance * np.maximum(size[:, None], np.abs(reached)))).max(axis=0)
+            error = np.where(np.isfinite(error), error, np.inf)
+            if column > 2 and (error <= 1.0).all():
+                break
+        together = column + 1
+        taken = error <= 1.0
+        at[own[taken]] = np.where(last, ends[own], at[own] + h)[taken]
+        values[:, own[taken]] = reached[:, taken]
+        for place in own[taken].tolist():
+            found[place][0].append(float(at[place]))
+            found[place][1].append(values[:, place].copy())
+        factor = SAFETY * np.maximum(error, 1e-10) ** (-1.0 / (2 * column + 1))
+        grown = h * np.clip(factor, SMALLEST_CHANGE, LARGEST_CHANGE)
+        steps[own] = np.where(last & taken, left, grown)
+        if (np.abs(grown) < 1e-14 * np.maximum(np.abs(at[own]), np.abs(ends - begins)[own])).any():
+            break
+    raise NotFinite("a motion is not finite")
+
+
 def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)) -> Array:
     """Return the values after one extrapolated step for many initial values, each with its own step size.
 

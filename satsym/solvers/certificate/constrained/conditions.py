@@ -55,10 +55,10 @@ def certify(
 ) -> tuple[Certificate, Solution | None]:
     """Certify an extremal with boundary arcs, see :func:`satsym.solvers.certificate.verdict.examined`."""
     with np.errstate(all="ignore"):
-        again = replay(solution)
-        if again is None:
+        followed = _followed(solution)
+        if followed is None:
             return unmeasured("flow from the initial costates is finite"), None
-        first, again = _in_segments(solution, again)
+        first, again = followed
         curved = _legendre_clebsch(solution, again)
         second: list[Check] = []
         others = Comparison((), ())
@@ -93,17 +93,25 @@ def _legendre_clebsch(solution: Solution, again: Replay) -> float:
     return min(found)
 
 
-def _in_segments(solution: Solution, again: Replay) -> tuple[list[Check], Replay]:
-    """Check the first-order conditions along one flow or, if these fail there by the growth of rounding, part by part.
+def _followed(solution: Solution) -> tuple[list[Check], Replay] | None:
+    """Integrate a solution again and check the first-order conditions; ``None`` if no integration is finite.
 
-    The gap between a part and the beginning of the next one must not exceed the tolerance of the boundary residual.
+    The conditions are checked along one flow or, if these fail there by the growth of rounding, part by part. The gap
+    between a part and the beginning of the next one must not exceed the tolerance of the boundary residual.
     """
-    first = _first_order(solution, again)
-    if all(c.passed for c in first) or (parts := replay(solution, in_segments=True)) is None:
-        return first, again
-    renamed = [replace(c, name=NAMES.get(c.name, c.name)) for c in _first_order(solution, parts)]
-    checks = [*renamed, Check("gaps where the integration restarts", parts.gap, RESIDUAL)]
-    return (checks, parts) if all(c.passed for c in checks) else (first, again)
+    whole = replay(solution, most=DEFECT)
+    if whole is not None:
+        checks = _first_order(solution, whole)
+        if all(c.passed for c in checks):
+            return checks, whole
+    parts = replay(solution, in_segments=True)
+    if parts is not None:
+        renamed = [replace(c, name=NAMES.get(c.name, c.name)) for c in _first_order(solution, parts)]
+        checks = [*renamed, Check("gaps where the integration restarts", parts.gap, RESIDUAL)]
+        if all(c.passed for c in checks):
+            return checks, parts
+    whole = replay(solution)  # to its end, which shows how far it is from the solution
+    return None if whole is None else (_first_order(solution, whole), whole)
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:

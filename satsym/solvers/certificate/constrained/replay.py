@@ -12,7 +12,6 @@ from itertools import pairwise
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.reintegration.flow import FAINT_COSTATE, TOLERANCE, Flow, typical
@@ -21,7 +20,7 @@ from satsym.solvers.constrained.active import field_and_control
 from satsym.solvers.constrained.arcs import conditions, gradient
 from satsym.solvers.constrained.structure import Active, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.simulation.extrapolation import integrate, leap
+from satsym.solvers.simulation.extrapolation import integrate_each, leap
 
 INDEPENDENT = 1e-9
 """Minimum part of a constraint's gradient, relative, that is independent of given states and terminal constraints.
@@ -84,7 +83,7 @@ class Replay:
         return Flow(solution.times, z[:n], z[n:], self.cost)
 
 
-def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
+def replay(solution: Solution, in_segments: bool = False, most: float = np.inf) -> Replay | None:
     """Integrate an extremal again; ``None`` if the motion is not finite or its events do not match its nodes.
 
     Parameters
@@ -92,6 +91,9 @@ def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
     in_segments
         Whether arcs, and segments of arcs, begin at the solution's nodes instead of at the ends of the preceding ones,
         so that rounding errors do not grow along the whole motion.
+    most
+        Distance from the solution at the nodes, relative to the typical magnitudes, beyond which the integration stops
+        at the end of an arc and ``None`` is returned.
     """
     n, arcs = len(solution.x), stated_arcs(solution)
     breaks = np.flatnonzero(np.diff(solution.times) == 0.0)
@@ -102,22 +104,26 @@ def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
     value, cost, pieces, jumps, off, gap = known[:, 0], 0.0, [], [], 0.0, 0.0
     try:
         for k, active in enumerate(arcs):
-            nodes, parts = slice(edges[k], edges[k + 1]), list[Piece]()
-            for part in _parts(nodes, solution.times) if in_segments else (nodes,):
-                if in_segments and part.start > 0:
-                    gap = max(gap, float((np.abs(value - known[:, part.start]) / sizes).max()))
-                    value = known[:, part.start]
-                piece, spent = _piece(solution.instance, active, solution.times[part], value, sizes, part)
-                parts.append(piece)
-                cost += spent
-                value = piece.z[:, -1].copy()
-            pieces.append(_joined(parts, nodes))
+            nodes = slice(edges[k], edges[k + 1])
+            parts = _parts(nodes, solution.times) if in_segments else [nodes]
+            starts = np.column_stack([value, *(known[:, part.start] for part in parts[1:])])
+            if in_segments and k > 0:
+                gap = max(gap, float((np.abs(value - known[:, nodes.start]) / sizes).max()))
+                starts[:, 0] = known[:, nodes.start]
+            found, spent = _integrated(solution, active, parts, starts, sizes)
+            for one, after in zip(found, starts.T[1:], strict=False):
+                gap = max(gap, float((np.abs(one.z[:, -1] - after) / sizes).max()))
+            pieces.append(_joined(found, nodes))
+            if float((np.abs(pieces[-1].z - known[:, nodes]).max(axis=1) / sizes).max()) > most:
+                return None
+            cost += spent
+            value = pieces[-1].z[:, -1].copy()
             if k < len(breaks):
                 along = jumping(solution, k, active, arcs[k + 1])
-                found, left = _jump(solution, along, int(breaks[k]), sizes)
-                jumps.append(found)
+                jump, left = _jump(solution, along, int(breaks[k]), sizes)
+                jumps.append(jump)
                 off = max(off, left)
-                value[n:] -= _push(solution, found, float(solution.times[breaks[k]]), value)
+                value[n:] -= _push(solution, jump, float(solution.times[breaks[k]]), value)
     except (*FAILURES, np.linalg.LinAlgError):
         return None
     pressed, end = _pressed(solution, pressing(solution), value), value.copy()
@@ -207,11 +213,20 @@ def _pressed(solution: Solution, may: Active, value: Array) -> dict[int, float]:
     return dict(zip(found, zeta.tolist(), strict=True))
 
 
-def _piece(
-    instance: Instance, active: Active, nodes: Array, start: Array, sizes: Array, place: slice
-) -> tuple[Piece, float]:
-    """Integrate over an arc, and return its values at and between the nodes, and its running cost."""
-    n, model, p = len(instance.initial), instance.model, instance.parameters
+def _integrated(
+    solution: Solution, active: Active, parts: list[slice], starts: Array, sizes: Array
+) -> tuple[list[Piece], float]:
+    """Integrate over parts of an arc, each from its own start, and return them with the running cost of all.
+
+    Parameters
+    ----------
+    parts
+        Indices of the nodes of each part.
+    starts
+        States and costates at the beginning of each part, shape (2n, M).
+    """
+    instance, n, times = solution.instance, len(solution.x), solution.times
+    model, p = instance.model, instance.parameters
 
     def rates(t: Array, y: Array) -> Array:
         z = y[:-1]
@@ -220,12 +235,29 @@ def _piece(
         return np.concatenate([along, cost[None]])
 
     scale = np.append(sizes, sizes[:n] @ sizes[n:])
-    ends = np.array([nodes[0], nodes[-1]])
-    (found,) = integrate(rates, ends, np.append(start, 0.0), TOLERANCE, scale, together=True)
-    inner = nodes[:-1, None] + np.diff(nodes)[:, None] * np.arange(1, BETWEEN + 1) / BETWEEN
-    wanted = np.concatenate([[nodes[0]], inner.ravel()])
-    step = np.clip(np.searchsorted(found.times, wanted, side="right") - 1, 0, len(found.times) - 2)
-    values = leap(rates, found.times[step], found.values[step].T, wanted - found.times[step])
-    values[:, -1] = found.end
-    piece = Piece(active, place, values[:-1, ::BETWEEN], wanted, values[:-1])
-    return piece, float(found.end[-1])
+    begins, ends = (np.array([times[place] for place in places]) for places in _edges(parts))
+    passed = integrate_each(rates, begins, ends, np.vstack([starts, np.zeros(len(parts))]), TOLERANCE, scale)
+    wanted, known = list[Array](), list[tuple[Array, Array]]()
+    for part, motion in zip(parts, passed, strict=True):
+        nodes = times[part]
+        inner = nodes[:-1, None] + np.diff(nodes)[:, None] * np.arange(1, BETWEEN + 1) / BETWEEN
+        wanted.append(np.concatenate([[nodes[0]], inner.ravel()]))
+        step = np.clip(np.searchsorted(motion.times, wanted[-1], side="right") - 1, 0, len(motion.times) - 2)
+        known.append((motion.times[step], motion.values[step].T))
+    before, values = (np.concatenate(rows, axis=-1) for rows in zip(*known, strict=True))
+    dense = leap(rates, before, values, np.concatenate(wanted) - before)[:-1]
+    found = list[Piece]()
+    for part, own, at, motion in zip(parts, _split(dense, wanted), wanted, passed, strict=True):
+        own[:, -1] = motion.end[:-1]
+        found.append(Piece(active, part, own[:, ::BETWEEN], at, own))
+    return found, float(sum(motion.end[-1] for motion in passed))
+
+
+def _edges(parts: list[slice]) -> tuple[list[int], list[int]]:
+    """Return the first and the last node of each part."""
+    return [part.start for part in parts], [part.stop - 1 for part in parts]
+
+
+def _split(dense: Array, wanted: list[Array]) -> list[Array]:
+    """Divide the values (2n, K) at all times into those of each part."""
+    return np.split(dense, np.cumsum([len(times) for times in wanted])[:-1], axis=1)
