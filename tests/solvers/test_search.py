@@ -22,7 +22,7 @@ from satsym import solvers
 from satsym.instance import Instance
 from satsym.solvers import by_search, improving
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.iteration import MOST_ITERATIONS, Limits
+from satsym.solvers.iteration import MOST_ITERATIONS, Limits, Meter
 from satsym.solvers.multipoint import equations, laws, newton
 from satsym.solvers.search import following, mesh, motion, nlp, order, solving
 from satsym.solvers.search.controls import controls_of, rates
@@ -448,7 +448,7 @@ def test_a_motion_that_only_a_coarse_mesh_makes_dear_is_followed(
     monkeypatch.setattr(following, "finer", lambda *_: (SimpleNamespace(cost=cost) for cost in costs))
     monkeypatch.setattr(following, "motion", lambda one: one)
     monkeypatch.setattr(following, "refined", lambda _: ([], residual))
-    assert following.followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact")) == (*came, False)
+    assert following.followed(found, LIMITS, 1.0, lambda at: (at.cost, "exact"), Meter()) == (*came, False)
 
 
 @pytest.mark.parametrize(
@@ -465,13 +465,54 @@ def test_a_motion_that_no_mesh_resolves_is_no_evidence_of_a_cheaper_one(
     monkeypatch.setattr(following, "finer", lambda *_: iter(made))
     monkeypatch.setattr(following, "motion", lambda one: looked.append(one) or one)
     monkeypatch.setattr(following, "refined", lambda one: ([], one.residual))
+    monkeypatch.setattr(following, "_moved", lambda *_: iter(()))
     found: Any = SimpleNamespace(objective=0.5, residual=60.0, programme=SimpleNamespace(intervals=40))
-    cost, answer, left = following.followed(found, LIMITS, 1.0, lambda at: None)
+    cost, answer, left = following.followed(found, LIMITS, 1.0, lambda at: None, Meter())
     assert np.isnan(cost)
     assert answer is None
     assert left is unsettled
     assert looked[:meshes] == made[:meshes]
     assert made[meshes:] == [one for one in made if one not in looked]
+
+
+@pytest.mark.parametrize(
+    ("residuals", "moves"),
+    [([0.5, 0.3, 0.2, 1e-3, 0.0], 3), ([0.5, 0.3, 0.29], 1), ([1e-3], 0)],
+    ids=["is resolved in the end", "falls no further", "is resolved"],
+)
+def test_a_mesh_follows_a_motion_while_its_residual_falls(
+    monkeypatch: pytest.MonkeyPatch, residuals: list[float], moves: int
+) -> None:
+    programme = SimpleNamespace(intervals=40, phases=1, smoothing=1e-3)
+    made = [SimpleNamespace(objective=0.5, residual=one, programme=programme, solved=True) for one in residuals]
+    laid, left = list[int](), iter(made[1:])
+    monkeypatch.setattr(following, "refined", lambda one: ([], one.residual))
+    monkeypatch.setattr(following, "motion", lambda one: SimpleNamespace(times=None, x=None))
+    monkeypatch.setattr(following, "graded", lambda times, x, count: laid.append(count))
+    monkeypatch.setattr(following, "_again", lambda *_: next(left))
+    found: Any = made[0]
+    assert list(following._moved(found, LIMITS, 1.0)) == made[1 : moves + 1]
+    assert laid == [40, 40, 40, 80][: len(laid)]
+    assert not list(following._moved(found, LIMITS, 0.4))  # it is not cheaper
+
+
+@pytest.mark.parametrize(("noise", "converges"), [(0.0, True), (1e-10, True), (1e-6, False)])
+def test_rounding_that_the_equations_amplify_ends_the_iteration(
+    monkeypatch: pytest.MonkeyPatch, noise: float, converges: bool
+) -> None:
+    """The residual of v^2 = 2 has an error that is different at each call."""
+    rng = np.random.default_rng(0)
+
+    def system(_: Any, v: np.ndarray, sloped: bool = True) -> tuple[np.ndarray, Any]:
+        return v**2 - 2.0 + noise * rng.normal(), csc_matrix(np.diag(2.0 * v)) if sloped else None
+
+    monkeypatch.setattr(newton, "system", system)
+    problem: Any = SimpleNamespace(units=lambda: np.ones(1), n=1)
+    found = newton.newton(problem, np.array([1.5]), LIMITS)
+    assert (found is not None) is converges
+    if found is not None:
+        assert found.unknown[0] == pytest.approx(np.sqrt(2.0), abs=max(newton.SOLVED, 3.0 * noise))
+        assert found.step <= max(newton.SOLVED, 3.0 * noise)
 
 
 def test_a_comparison_goes_on_where_the_one_with_a_dearer_answer_ended() -> None:

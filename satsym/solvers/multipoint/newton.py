@@ -19,6 +19,11 @@ from satsym.solvers.multipoint.equations import Problem, between, cost, points, 
 SOLVED = 1e-11
 """Largest component of the last step, relative to the scales of the unknowns, at which the iteration has converged."""
 
+ROUNDED, AMPLIFIED = 1e-9, 10.0
+"""Size of a step, relative to the scales of the unknowns, below which it may consist of rounding, which sensitive
+equations amplify. If such a step is not followed by a smaller one, the iteration has converged as far as it can, and
+the solution may change by ``AMPLIFIED`` times as much between two meshes."""
+
 SHORTEST, MOST_STEPS = 1e-3, 40
 """Smallest damping factor of a step, and maximum number of steps."""
 
@@ -73,6 +78,8 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
             after = float(np.abs(again / units).max())
             if after <= (1.0 - length / 4.0) * whole or after < SOLVED:
                 break
+            if whole < ROUNDED:
+                return Extremal(problem, v, whole, iteration)
             length /= 2.0
             if length < SHORTEST:
                 return None
@@ -86,13 +93,14 @@ def newton(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
 def solved(problem: Problem, v: Array, limits: Limits) -> Extremal | None:
     """Solve the equations on meshes with successively halved intervals until the solution converges; else ``None``."""
     found = newton(problem, v, limits)
+    last = 0.0 if found is None else found.step
     while found is not None and sum(found.problem.intervals) < FINEST:
         finer = newton(*_refined(found), limits)
         if finer is None:
             return None
-        change = _change(found, finer)
+        change, rounding, last = _change(found, finer), max(last, finer.step), finer.step
         found = replace(finer, iterations=found.iterations + finer.iterations, step=max(finer.step, change))
-        if change < SETTLED_SOLUTION:
+        if change < max(SETTLED_SOLUTION, AMPLIFIED * rounding if rounding > SOLVED else 0.0):
             return found
     return None
 

@@ -10,10 +10,10 @@ from typing import TypeVar
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.iteration import Limits
+from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import nlp
 from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR
-from satsym.solvers.search.mesh import UNRESOLVED, refined
+from satsym.solvers.search.mesh import UNRESOLVED, graded, refined
 from satsym.solvers.search.motion import Motion, motion, violates
 from satsym.solvers.search.nlp import Found
 from satsym.solvers.search.programme import Programme
@@ -36,6 +36,13 @@ that are left lowered it as much as the last one did. A motion whose residual ex
 refined: it steps over a singularity, such as the centre of a planet. The error of a cost is estimated as ``UNCERTAIN``
 times its last change."""
 
+MOVES, FALLING_RESIDUAL, MOVED = (1, 1, 1, 2, 2, 3), 0.9, 1_000_000
+"""The mesh of a motion that seems cheaper than an answer, but has no extremal on finer meshes, is laid anew along the
+motion up to ``len(MOVES)`` times, with these numbers of intervals relative to the coarse mesh, as long as the
+residual falls by the factor ``FALLING_RESIDUAL`` each time. ``MOVED`` is the work that all motions beside an answer may
+take for that, in unknowns times iterations. A close passage, as of a moon, becomes closer with each mesh: a much finer
+mesh fails at once where meshes that follow the motion lead to its extremal."""
+
 
 def part(limits: Limits) -> Limits:
     """Return limits for the finer meshes of one start, which leave work for the other starts."""
@@ -43,12 +50,17 @@ def part(limits: Limits) -> Limits:
 
 
 def followed(
-    found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None]
+    found: Found, limits: Limits, cost: float, exact: Callable[[Motion], tuple[float, Answer] | None], moving: Meter
 ) -> tuple[float, Answer | None, bool]:
     """Return the refined cost of a motion from a coarse mesh, and an extremal near it if it seems cheaper.
 
     A motion that costs more than the answer is refined as long as finer meshes lower its cost enough. One that costs
     less, with a cost that hardly changes on finer meshes, is cheaper even if no extremal is found near it.
+
+    Parameters
+    ----------
+    moving
+        Meter of the work for meshes that follow motions.
 
     Returns
     -------
@@ -84,7 +96,30 @@ def followed(
         further = islice(finer(last, limits, SMOOTHINGS[-1:] * len(SMOOTHINGS)), 1, None)
         answer = next(filter(None, (exact(motion(one)) for one in further)), None)
         return (costs[-1], None, False) if answer is None else (*answer, False)
-    return (costs[-1], None, False) if costs[-1] >= cost else (float("nan"), None, resolved)
+    if costs[-1] >= cost or not resolved:
+        return (costs[-1] if costs[-1] >= cost else float("nan")), None, False
+    for moved in _moved(found, replace(limits, work=MOVED, meter=moving), cost - margin):
+        answer = exact(motion(moved))
+        if answer is not None and answer[0] < cost - margin:
+            return *answer, False
+    return float("nan"), None, True
+
+
+def _moved(found: Found, limits: Limits, below: float) -> Iterator[Found]:
+    """Yield a solution on meshes that follow its motion, as long as it costs less than a bound."""
+    residual, intervals = refined(found)[1], found.programme.intervals
+    for factor in MOVES:
+        if found.objective >= below or residual <= RESOLVED or found.programme.phases > 1:
+            return
+        at = motion(found)
+        mesh = graded(at.times, at.x, factor * intervals)
+        with np.errstate(all="ignore"):
+            one = _again(found, [mesh], found.programme.smoothing, limits)
+        before, residual = residual, refined(one)[1]
+        if not one.solved or not residual < FALLING_RESIDUAL * before:
+            return
+        found = one
+        yield found
 
 
 def finer(found: Found, limits: Limits, smoothings: Sequence[float] = SMOOTHINGS) -> Iterator[Found]:

@@ -188,7 +188,9 @@ def _further(
         elif (known := next((came for coarse, came in seen if same(found.objective, coarse)), None)) is not None:
             yield Tried(plan, known)
         else:
-            came, answer, unsettled = followed(found, limits, cost, lambda at: _costing(exact(at, limits), cost_of))
+            came, answer, unsettled = followed(
+                found, limits, cost, lambda at: _costing(exact(at, limits), cost_of), past.moving
+            )
             seen.append((found.objective, came))
             unsettled &= not constrained  # with constraints it steps over one, mostly
             yield Tried(plan, came, answer if came < cost - CHEAPER * abs(cost) else None, unsettled)

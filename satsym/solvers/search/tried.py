@@ -7,6 +7,7 @@ from typing import Any, Generic, TypeVar
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solvers.iteration import Meter
 from satsym.solvers.search.starts.planning import Plan
 
 Answer = TypeVar("Answer")
@@ -54,6 +55,8 @@ class Past:
     asked
         The problem as it was stated, if that of the answers lacks a final state that follows from the others: their
         competitors have to reach it. ``None`` if both are the same.
+    moving
+        Meter of the work for meshes that follow motions which seem cheaper.
     """
 
     answers: int = 0
@@ -62,3 +65,4 @@ class Past:
     tried: list[Tried[Any]] = field(default_factory=list)
     seen: list[tuple[float, float]] = field(default_factory=list)
     asked: Instance | None = None
+    moving: Meter = field(default_factory=Meter)
