@@ -1,8 +1,8 @@
 """Quick start: Newton's method from the straight line between the boundary states, accepted only if it goes smoothly.
 
-No correction may leave the domain, each must be smaller than the one before, and only a few are allowed. On a mesh that
-resolves the motion, which is recomputed if necessary, the second variation must be positive. All other cases are left
-to slower methods.
+No correction may leave the domain, each on the same mesh must be smaller than the one before or be rounding, and only
+a few are allowed. On a mesh that resolves the motion, which is recomputed if necessary, the second variation must be
+positive. All other cases are left to slower methods.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import linearise
-from satsym.solvers.collocation.newton import within_domain
+from satsym.solvers.collocation.newton import FLOOR, within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System, costs
@@ -67,14 +67,14 @@ def _followed(problem: TwoPoint, start: Curve, passed: list[tuple[System, Curve,
     system = System(problem, start.mesh, FEWER)
     for steps in range(1, FEW_CORRECTIONS + 1):
         if steps == ROUGH + 1:
-            curve, system = curve.with_stages(STAGES), System(problem, curve.mesh, STAGES)
+            curve, system, before = curve.with_stages(STAGES), System(problem, curve.mesh, STAGES), float("inf")
         residual, jacobian = system.residual(curve), system.jacobian(curve)
         try:
             linearised = linearise(system, curve, residual, jacobian)
             step = linearised.step(residual)
             moved = curve.moved(step, 1.0)
             size = step.size(moved)
-            if not size < before or within_domain(problem, curve, step) < 1.0:
+            if not (size < before or size < FLOOR) or within_domain(problem, curve, step) < 1.0:
                 return None
             curve, before = moved, SHORTER * size
             passed.append((system, curve, size))
