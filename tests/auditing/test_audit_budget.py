@@ -11,7 +11,7 @@ from satsym.auditing.measurements import programs
 from satsym.auditing.program import run as program_run
 from satsym.auditing.program import text as program
 from satsym.cli import main
-from satsym.formula import budget, reading, weight
+from satsym.formula import budget, reading, weight, writing
 from satsym.formula.budget import Limit, OverBudget
 from satsym.formula.tree import Mul, Node, Sym
 from tests.bench.fuzz_ledgers import audited
@@ -143,7 +143,17 @@ def test_exempt_work_is_not_counted() -> None:
                 abs(i)
         abs(1)
 
-    budget.within(Limit(100), work)
+    spent: list[int] = []
+    budget.within(Limit(100), work, spent.append)
+    assert 0 < spent[0] <= 100
+
+    def counted_again() -> None:
+        work()
+        for i in range(200):
+            abs(i)
+
+    with pytest.raises(OverBudget):
+        budget.within(Limit(100), counted_again)
 
 
 def test_rows_share_what_a_ledger_may_take() -> None:
@@ -165,7 +175,8 @@ def test_a_shared_part_is_weighed_once_and_counted_as_often_as_it_is_printed() -
 
 @pytest.mark.parametrize("text", ["exp(-t/0.000001)", "exp(10000)", "sin(1000000000*t)", "exp(exp(5))", "(a+b)**9/c"])
 def test_what_people_print_is_light_enough(text: str) -> None:
-    reading.expression(text)
+    found = reading.expression(text)
+    assert reading.expression(writing.written(found)) == found
 
 
 @pytest.mark.parametrize(

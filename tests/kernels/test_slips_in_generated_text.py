@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from functools import cache
 
 import pytest
@@ -65,7 +66,10 @@ def test_a_millionth_of_a_term_of_a_hundred_millionth_is_seen(name: str) -> None
     ],
 )
 def test_right_functions_with_numbers_of_any_size_are_generated(rate: sp.Expr) -> None:
-    generated(derive(problem(rate)), "task.py")
+    _, found = generated(derive(problem(rate)), "task.py")
+    at = {x: 0.3, y: -0.7, u: 0.2}
+    exact = float(rate.subs({name: sp.Rational(str(value)) for name, value in at.items()}).evalf(60))
+    assert found.dynamics(0.0, (at[x], at[y]), (at[u],), ()) == pytest.approx((at[y], exact), rel=1e-12)
 
 
 def test_a_motion_that_leaves_the_domain_in_a_step_is_followed_in_shorter_ones() -> None:
@@ -73,7 +77,8 @@ def test_a_motion_that_leaves_the_domain_in_a_step_is_followed_in_shorter_ones()
     (a,) = symbols_of((above,))
     rates = {a: -(10**4) * (1 + x**2), x: u + sp.sin(a ** sp.Rational(1, 3)), y: x}
     model = FirstOrder(name="m", title="M", states=(above, *STATES), controls=CONTROLS, parameters=(), rates=rates)
-    generated(derive(Problem(name="root", title="Root", model=model, running_cost=u**2 / 2)), "root.py")
+    _, found = generated(derive(Problem(name="root", title="Root", model=model, running_cost=u**2 / 2)), "root.py")
+    assert found.dynamics(0.0, (8.0, 3.0, 0.0), (0.5,), ()) == pytest.approx((-(10.0**5), 0.5 + math.sin(2.0), 3.0))
 
 
 @pytest.mark.parametrize(

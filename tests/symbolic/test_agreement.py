@@ -168,7 +168,8 @@ def test_four_thrusters_of_a_linear_cost_derive_and_generate() -> None:
     problem = Problem(
         name="four", title="Four thrusters", model=model, running_cost=ur1 + ur2 + ut1 + ut2, control_set="box"
     )
-    generated(derive(problem), "four.py")
+    _, found = generated(derive(problem), "four.py")
+    assert found.dynamics(0.0, (2.0, 0.5, 1.0), (0.3, 0.1, 0.7, 0.2), ()) == pytest.approx((0.5, 0.45, 0.25))
 
 
 def linear(*rows: str, inputs: str) -> FirstOrder:

@@ -70,8 +70,11 @@ def test_what_swallows_errors_ends_as_well() -> None:
 def test_nothing_is_left_of_a_limit_that_was_kept() -> None:
     with within(0.2, "mine"):
         entering("model", "first")
+        assert signal.getitimer(signal.ITIMER_REAL)[0] > 0.0
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+    assert signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
     time.sleep(0.3)
-    entering("model", "second")
+    entering("model", "second")  # raises what ends a derivation if the deadline still counts
 
 
 def test_a_signal_that_comes_while_the_timer_is_stopped_leaves_no_timer_behind(monkeypatch: pytest.MonkeyPatch) -> None:
