@@ -154,9 +154,10 @@ def test_anything_else_is_refused_with_the_reason_and_at_once(text: str, reason:
 
 def test_an_edit_changes_one_place() -> None:
     tree = expression("a*(b + c) - b/d")
-    for path, node in walk(tree):
-        if node == Sym("b"):
-            assert symbols(replaced(tree, path, Sym("e"))) == symbols(tree) | {"e"}
+    paths = [path for path, node in walk(tree) if node == Sym("b")]
+    assert len(paths) == 2
+    for path in paths:
+        assert symbols(replaced(tree, path, Sym("e"))) == symbols(tree) | {"e"}
 
 
 IDENTITIES = [

@@ -48,6 +48,7 @@ def test_they_obey_the_equations_of_motion(name: str) -> None:
 def test_their_controls_are_admissible_and_their_durations_are_as_asked(name: str) -> None:
     case = instances.load(name)
     programme, found = sampled(case)
+    assert found
     for one in found:
         u = programme.controls.controls(one.v)
         np.testing.assert_allclose(case.control_set.project(u), u, atol=1e-12)
