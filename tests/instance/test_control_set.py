@@ -97,3 +97,11 @@ def test_a_set_that_was_used_goes_to_another_process() -> None:
     for of in ALL.values():
         of.project(drawn(of)), of.nearest(), of.without_bounds, of.arguments
         assert pickle.loads(pickle.dumps(of)) == of
+
+
+def test_the_minimum_norm_of_a_throttled_vector_comes_last() -> None:
+    case = instance.load("transfer-fuel")
+    ((least, largest),) = case.model.spec.rings
+    arguments = case.control_set.arguments
+    assert (least, largest) == (len(arguments) - 1, 0)
+    assert arguments[least] == 0.0 < arguments[largest] < math.inf

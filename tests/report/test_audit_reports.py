@@ -399,3 +399,17 @@ def test_each_finding_quotes_what_is_printed(document: Ledger, judged: dict[str,
     review = Review.of(document, [replace(conclusion, spoiled_by=())], load("en"))
     (brief,) = typeset._in_brief(review, 1, review.findings[0])
     assert r"\textit{titik ini stabil" in brief
+
+
+def test_code_is_shown_of_what_was_measured_and_not_of_a_formula_alone(
+    document: Ledger, judged: dict[str, list[Judged]]
+) -> None:
+    def shown(**more: object) -> bool:
+        rows = [replace(row, **more) if row.key == "2" else row for row in judged["small"]]
+        text = page.render([document], {"small": rows}, "en")
+        _, _, finding = text.partition('id="small-finding-1"')
+        return 'class="code"' in finding.partition('id="small-finding-2"')[0]
+
+    assert shown()
+    assert not shown(by_formula=True)
+    assert not shown(evidence="")

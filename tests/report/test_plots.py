@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from satsym import instance as instances
 from satsym import units
@@ -23,6 +24,7 @@ from satsym.report import display
 from satsym.report.look import SIZES, Look
 from satsym.report.plots import curves, pages, pictures, series, style
 from satsym.report.plots.panels import _of_pi
+from satsym.report.plots.powers import WithPowers
 from satsym.report.plots.reading import Reading
 from satsym.report.plots.reading import read as read_all
 from satsym.report.plots.scene import Scene
@@ -616,3 +618,13 @@ def test_times_go_on_through_the_nodes(soft_return: Solution) -> None:
     scene = Scene.of(soft_return)
     assert all(a < b for a, b in pairwise(scene.times))
     assert scene.time_unit == "1"
+
+
+@pytest.mark.parametrize(
+    ("largest", "power"), [(0.0005, "5 × 10⁻⁴"), (0.001, ""), (500000.0, ""), (1000000.0, "1 × 10⁶"), (0.0, "")]
+)
+def test_ticks_have_a_power_of_ten_where_the_largest_is_outside_the_plain_range(largest: float, power: str) -> None:
+    axis = Figure().subplots().yaxis
+    axis.set_major_formatter(WithPowers())
+    text = axis.get_major_formatter().format_ticks([0.0, largest])[-1]
+    assert text == power if power else float(text) == largest

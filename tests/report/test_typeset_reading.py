@@ -19,6 +19,7 @@ from satsym.report.latex.equations import (
     display,
 )
 from satsym.report.latex.preamble import cited
+from satsym.report.latex.statement import _vector
 from satsym.report.latex.steps import shown
 from satsym.report.texts import languages, load
 from satsym.spec import Variable
@@ -310,3 +311,11 @@ def test_equations_too_long_to_be_shown_may_be_the_first_ones() -> None:
     found = shown(Context(derivation, load("en"), Typesetter(derivation)), step)
     assert found.first == found.last == "two_body:singular_arcs.three"
     assert all(rf"\satsymalso{{0}}{{two_body:singular_arcs.{name}}}" in found.body for name in names[:2])
+
+
+def test_the_components_of_a_vector_too_wide_for_a_line_are_counted_from_one() -> None:
+    wide = plain("+".join(["x_{1}"] * 60))
+    rows = _vector("f", (wide, wide))
+    assert [row.left_tex for row in rows] == ["(f)_1", "(f)_2"]
+    (row,) = _vector("f", (plain("x"), plain("y")))
+    assert row.left_tex == "f"

@@ -13,6 +13,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.continued import _guessed
 from satsym.status import Status
+from tests.solvers.test_search import programme_of
 
 BY = 5.0
 
@@ -88,3 +89,10 @@ def test_guesses_on_a_way_through_problems_have_the_duration_of_the_last_answer(
     assert found.times[-1] - found.times[0] > 0.0
     guessed = _guessed(replace(case, continuation=()), 1.0, found)
     assert guessed.tf_guess == pytest.approx(found.times[-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["beam", "double-integrator-fuel", "double-integrator-time"])
+def test_limits_of_the_search_do_not_depend_on_when_one_begins(name: str) -> None:
+    case = instance.load(name)
+    for own, moved in zip(programme_of(case).bounds, programme_of(later(case)).bounds, strict=True):
+        assert moved == pytest.approx(own)

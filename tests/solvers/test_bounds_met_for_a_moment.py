@@ -20,7 +20,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.numbers import changed
 from satsym.solution import Solution
-from satsym.solvers.control.corners import beyond
+from satsym.solvers.control.corners import beyond, zeros
 from satsym.status import Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
@@ -146,3 +146,11 @@ def test_what_is_beyond_zero_between_samples_is_found_and_nothing_else() -> None
             assert len(found) == crossed
             assert all(abs(t - 0.3) < 1e-4 for t in found)
     assert beyond(lambda t: np.inf, times, np.full(13, np.inf)) == []
+
+
+def test_changes_of_sign_are_found_once_at_samples_between_them_and_not_at_ends() -> None:
+    times = np.arange(-10.0, 11.0)
+    for sign in (-1.0, 1.0):
+        assert zeros(times, sign * (times - 3.5) * (times + 5.0) * (times - 7.0)) == pytest.approx([-5.0, 3.5, 7.0])
+        assert zeros(times, sign * (times - 3.0) ** 2) == []
+        assert zeros(times, sign * (times + 10.0)) == []
