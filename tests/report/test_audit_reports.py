@@ -9,6 +9,7 @@ import subprocess
 import tomllib
 from collections import Counter
 from dataclasses import replace
+from fractions import Fraction
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -19,11 +20,13 @@ from satsym.auditing import VERDICTS, Judged, Ledger, cache, read, sentences
 from satsym.auditing.causes import Weight
 from satsym.auditing.ledger import documents
 from satsym.auditing.sentences import sentence
+from satsym.formula.tree import Num
 from satsym.report.findings.objects import audit_object
 from satsym.report.findings.review import Review
 from satsym.report.html import audit as page
 from satsym.report.html.markup import Markup, joined, math, tag
 from satsym.report.latex import audit as typeset
+from satsym.report.latex.formula_tex import formula
 from satsym.report.terminal.audit import audit_text
 from satsym.report.texts import languages, load
 from tests.support.ledgers import ledger, row
@@ -206,6 +209,12 @@ def test_text_is_escaped_unless_it_is_markup() -> None:
 @pytest.mark.parametrize("formula", ["a_b_c", r"\left( x", "x^"])
 def test_a_formula_that_cannot_be_converted_is_shown_as_code(formula: str) -> None:
     assert math(formula) == tag("code", formula)
+
+
+def test_a_number_is_a_fraction_only_where_no_decimal_is_exact() -> None:
+    assert formula(Num(Fraction(7))) == "7"
+    assert formula(Num(Fraction(1, 4))) == "0.25"
+    assert formula(Num(Fraction(1, 3))) == r"\frac{1}{3}"
 
 
 def test_mathematics_is_read_as_it_is_written() -> None:

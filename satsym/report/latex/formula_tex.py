@@ -124,7 +124,7 @@ def _signed(term: Node, first: bool) -> str:
 def _tex(node: Node) -> tuple[str, int]:
     """Return the LaTeX of a node, and its binding strength."""
     if isinstance(node, Num):
-        return written(node) if node.value.denominator == 1 or "/" not in written(node) else _fraction(node), _ATOM
+        return _fraction(node) if "/" in written(node) else written(node), _ATOM
     if isinstance(node, Sym):
         return symbol(node.name), _ATOM
     if isinstance(node, Neg):
