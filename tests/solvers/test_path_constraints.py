@@ -14,6 +14,7 @@ from sympy import Rational, pi, sin
 
 import satsym
 from satsym.front.solution import Solution
+from satsym.instance import Instance
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
@@ -217,6 +218,18 @@ def test_a_state_that_is_left_free_may_keep_a_constraint_whose_slope_by_it_vanis
     refuse(round_discs(final={"x": 0.3}).case)
     with pytest.raises(BadInput, match="final: path constraint"):
         refuse(round_discs(final={"x": 0.3, "y": -0.05}).case)
+
+
+def test_a_constraint_at_the_end_is_tested_at_the_final_time_or_where_it_never_changes():
+    def at_the_end(of: Problem, tf: float | str) -> Instance:
+        stated = {"initial": {"x": 0.0, "v": 0.0}, "final": {"x": 0.3}, "parameters": {"c": 0.2}}
+        return satsym.Instance.of(of, tf=tf, **stated).case
+
+    refuse(at_the_end(MOVING, 2.0))  # the wall is at 0.4 then
+    refuse(at_the_end(MOVING, "free"))
+    for of, tf in ((MOVING, 1.0), (WALL, 1.0), (WALL, "free")):
+        with pytest.raises(BadInput, match="final: path constraint wall has the value 0"):
+            refuse(at_the_end(of, tf))
 
 
 @pytest.mark.parametrize("angle", [0.3, 1.1, 2.0, 2.5])

@@ -67,6 +67,19 @@ def test_a_singular_feedback_and_its_slope_are_those_of_the_formulas(tmp_path: P
     assert matrix == pytest.approx(np.array(slopes), rel=1e-11 if one is TIMED else 1e-13, abs=1e-13 * size)
 
 
+def test_a_singular_arc_of_the_largest_cost_fails_the_legendre_clebsch_condition(tmp_path: Path) -> None:
+    """At rest in the origin the costs x^2 / 2 and -x^2 / 2 have the same extremal: a minimum and a maximum."""
+    least, largest = (
+        instance(tmp_path, problem(name, {x: v}, cost, ("v",)), (0.0,), 3.0)
+        for name, cost in (("regulator", x**2 / 2), ("reward", -(x**2) / 2))
+    )
+    found = solve.solve(least, examined=False)
+    again = certificate.certify(replace(found, instance=largest), compared=False)
+    assert again is not None
+    assert (again.verdict, again.legendre_clebsch) == ("extremal only", pytest.approx(-1.0))
+    assert "generalised legendre-clebsch" in [check.name for check in again.checks if not check.passed]
+
+
 def cost_of(start: tuple[float, float], tf: float, signs: tuple[float, float], times: np.ndarray) -> float:
     """Of two full arcs and the singular feedback: there the costate of y vanishes and that of x is -y, so y' = x."""
     state, begin, edges = np.array([*start, 0.0]), 0.0, [*times, tf]

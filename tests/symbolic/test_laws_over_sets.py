@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import random
 from collections.abc import Callable
@@ -93,3 +94,20 @@ def test_a_law_that_has_the_magnitude_of_a_costate_is_generated() -> None:
     law = kernels.control_law(0.0, (0.3, 0.1), (-0.7, 0.4), (), (-1.0, 1.0, 1.0))
     assert "fabs(lambda_x)" in text
     assert law[0] * (math.cos(law[1]) + 14 * math.sqrt(1.18) * math.sin(law[1])) > 0.0
+
+
+@pytest.mark.parametrize("least", [0.0, 0.5])
+@pytest.mark.parametrize("costates", [(0.9, -0.4), (0.1, 0.2)])
+def test_the_minimised_hamiltonian_of_a_norm_is_the_least_of_all_controls(
+    least: float, costates: tuple[float, float]
+) -> None:
+    thrust = Annulus("u", "v") if least else Ball("u", "v")
+    derivation = derive(problem({"a": thrust, "b": Free("w")}, sp.sqrt(u**2 + v**2) + w**2 / 3))
+    found = derivation.step("minimised_hamiltonian").equations[0].rhs
+    (a, b), (at_x, at_y) = costates, (0.3, 0.7)
+    values = {"x": at_x, "y": at_y, "lambda_x": a, "lambda_y": b, "u_min": least, "u_max": 2.0}
+    vectors = [cmath.rect(size, 0.001 * k) for size in (least, 1.0, 2.0) for k in range(6284)]
+    of_vector = min(abs(z) + 3.0 * a * z.real + b * z.imag for z in vectors)
+    of_other = min(0.01 * k * (0.01 * k / 3.0 - 7.0 * b) for k in range(-1000, 1001))
+    expected = a * at_y - b * at_x + of_vector + of_other
+    assert float(found.xreplace({s: values[s.name] for s in found.free_symbols})) == pytest.approx(expected, abs=1e-4)
