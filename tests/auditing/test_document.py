@@ -98,6 +98,16 @@ def test_a_draft_is_judged_and_confirmed_rows_are_kept(paper: Path, capsys: pyte
     assert again.count("draft = true\n") == 5
 
 
+def test_the_rate_of_a_state_without_a_velocity_is_a_letter_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    rate = r"\dot\beta = \frac{e (e + \cos f)}{1 + e^2 + 2 e \cos f} \dot f"
+    Path("orbit.tex").write_text(rf"\begin{{equation}} {rate} \end{{equation}}")
+    assert main(["read", "orbit.tex", "--model", "velocity_frame"]) == 0
+    assert [row.verdict for row in audit(auditing.read(tmp_path / "orbit.ledger.toml"))] == ["confirmed"]
+
+
 def test_displays_of_myst_have_their_labels_as_items(tmp_path: Path) -> None:
     path = tmp_path / "notes.md"
     path.write_text(
