@@ -7,12 +7,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from satsym.kernels import load
 from satsym.kernels.batch import compiling
+from satsym.kernels.batch.canonical import CLASSICAL, Tableau
 from satsym.kernels.batch.workspace import inlined
 from satsym.kernels.core import Kernels
+from satsym.solvers.shooting.runge_kutta import tableau
 
 SECOND = """
 import time, numpy as np
@@ -53,3 +56,12 @@ def test_bodies_stand_in_line_under_names_of_their_own() -> None:
     assert len(written.results) == 4
     assert "dynamics(" not in "\n".join([*written.lines, *written.results])
     assert any(line.startswith("a_") for line in written.lines)
+
+
+@pytest.mark.parametrize("method", [CLASSICAL, tableau()], ids=["classical", "of order eight"])
+def test_methods_meet_the_conditions_of_order_four(method: Tableau) -> None:
+    a, b, c = map(np.array, method)
+    np.testing.assert_allclose(a.sum(axis=1), c, atol=1e-14)
+    sums = (b, b * c, b * c**2, b @ a * c, b * c**3, b * c * (a @ c), b @ a * c**2, b @ a @ a * c)
+    exact = (1.0, 1 / 2, 1 / 3, 1 / 6, 1 / 4, 1 / 8, 1 / 12, 1 / 24)
+    np.testing.assert_allclose([one.sum() for one in sums], exact, atol=1e-14)
