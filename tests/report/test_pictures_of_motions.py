@@ -11,6 +11,7 @@ import sympy
 import satsym
 from satsym import instance as instances
 from satsym import kernels
+from satsym.analysis.orbits.elements import elements
 from satsym.analysis.subject import analyse
 from satsym.instance import Instance
 from satsym.report.look import Look
@@ -20,6 +21,7 @@ from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
 from satsym.report.plots.space import attitudes
+from satsym.report.plots.space.conics import _asymptotes, _open
 from satsym.report.plots.studies import figures as of_study
 from satsym.report.plots.studies import on_axis
 from satsym.report.results.studies import Numbers, distinguishing
@@ -247,3 +249,13 @@ def test_eigenvalues_that_lie_decades_apart_are_not_drawn_on_one_spot(name: str,
     assert shown.max() <= 1.0
     apart = np.linalg.norm(shown[:, None] - shown, axis=-1) + np.eye(len(ends))
     assert apart.min() > 3e-3
+
+
+def test_asymptotes_are_where_the_branches_of_a_hyperbola_go() -> None:
+    orbit = elements((2.0, 0.0, 0.0), (0.3, 1.6, 0.2), 1.0)
+    assert orbit.eccentricity > 1.0
+    last = _open(orbit, 1e6)[:, [0, -1]]
+    for ray, far in zip(_asymptotes(orbit, 10.0), last.T, strict=True):
+        way = ray[:, 1] - ray[:, 0]
+        assert float(way @ way) == pytest.approx((10.0 + np.linalg.norm(ray[:, 0])) ** 2)
+        np.testing.assert_allclose(way / np.linalg.norm(way), far / np.linalg.norm(far), atol=1e-5)

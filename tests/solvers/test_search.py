@@ -25,6 +25,7 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.iteration import MOST_ITERATIONS, Limits, Meter
 from satsym.solvers.multipoint import equations, laws, newton
 from satsym.solvers.search import following, mesh, motion, nlp, order, solving
+from satsym.solvers.search.coarse import at_edge
 from satsym.solvers.search.controls import controls_of, rates
 from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
@@ -577,3 +578,13 @@ def test_a_motion_that_steps_over_a_constraint_is_seen_to_violate_it() -> None:
     over = np.array(at.x)
     over[0, 1::2], over[0, 2::2] = 0.0, 0.3  # the wall is at 1/9
     assert motion.violates(replace(at, x=over))
+
+
+def test_a_free_duration_at_either_limit_is_at_the_edge() -> None:
+    programme = programme_of(instances.load("double-integrator-time"))
+    at = programme.first_duration
+    shortest, longest = (float(w[at]) for w in programme.bounds)
+    for duration, edge in ((shortest, True), (longest, True), (1.5 * shortest, False), (0.5 * longest, False)):
+        w = programme.bounds[0].copy()
+        w[at] = duration
+        assert at_edge(SimpleNamespace(programme=programme, unknown=w)) is edge  # type: ignore[arg-type]
