@@ -16,7 +16,7 @@ from satsym.report.artefacts import generated
 from satsym.symbolic import Angle, Annulus, Ball, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive
 from satsym.symbolic.functions.minimisers import Clip
 from satsym.symbolic.functions.roots import minimum_between
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import effort, parts, product
 
 STATES = (Variable("x", "x"), Variable("y", "y"))
 CONTROLS = (Variable("u", "u"), Variable("v", "v"), Variable("w", "w"))
@@ -111,3 +111,14 @@ def test_the_minimised_hamiltonian_of_a_norm_is_the_least_of_all_controls(
     of_other = min(0.01 * k * (0.01 * k / 3.0 - 7.0 * b) for k in range(-1000, 1001))
     expected = a * at_y - b * at_x + of_vector + of_other
     assert float(found.xreplace({s: values[s.name] for s in found.free_symbols})) == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize(("cost", "smoothed"), [(v**2 + w**2, True), (u**2 + v**2 + w**2, False)])
+def test_what_smooths_a_switching_control_has_the_unit_of_the_cost_over_its_square(
+    cost: sp.Expr, smoothed: bool
+) -> None:
+    length, rate = {"[length]": sp.Integer(1)}, {"[length]": sp.Integer(3), "[time]": sp.Integer(-1)}
+    known: dict[str, dict[str, sp.Expr] | None] = {"u": length, "v": {}, "w": {}}
+    effort.declare_product(known, problem({"a": Box("u"), "b": Free("v", "w")}, cost), rate)
+    expected = {"[length]": sp.Integer(1), "[time]": sp.Integer(-1)} if smoothed else None
+    assert known[parts.SMOOTHING.symbol] == expected
