@@ -423,8 +423,9 @@ def test_a_finite_horizon_pays_what_it_predicts(tmp_path: Path):
     assert np.abs(simulated.u[:, -1]).max() < 1e-12
 
 
-def test_responses_are_the_same_where_deviations_are_small(tmp_path: Path):
-    given_case = case(tmp_path, r=1.0 + 1e-5, tf=10.0)
+@pytest.mark.parametrize("more", ["", "horizon = 10.0\n"])
+def test_responses_are_the_same_where_deviations_are_small(tmp_path: Path, more: str):
+    given_case = case(tmp_path, r=1.0 + 1e-5, tf=10.0, more=more)
     found = responses(designed(given_case), given_case)
     assert found.exact_free is not None
     assert found.exact_steered is not None
