@@ -114,6 +114,13 @@ def test_each_condition_of_a_sentence_has_to_be_met_by_something(text: str, vacu
     assert found.vacuous is vacuous
 
 
+def test_an_equivalence_is_said_of_the_larger_of_two_families() -> None:
+    universal = "all(m.n < 4 for m in NUMBERS)"
+    members = answer(universal).members
+    assert members > 1
+    assert [answer(f"iff({one})").members for one in (f"{universal}, 1 == 1", f"1 == 1, {universal}")] == [members] * 2
+
+
 def test_what_is_vacuous_names_the_condition_that_nothing_meets() -> None:
     found = answer("all(implies(m.n < 2, m.n == 1) and implies(m.n > 9, m.n == 3) for m in NUMBERS)")
     assert found.reasons == ("none of 3 numbers satisfies the condition m.n > 9",)
