@@ -42,16 +42,30 @@ TURNS, LONG = 3, 5.0
 
 INTRODUCTION = """# Known optima
 
-This table lists the shipped instances whose optimum is known; `make bench-optima` writes it. Each instance is solved
-from a cold start, without an initial guess. The *independent* optimum was found without satsym, as described below the
-table. *Direct* is CasADi's collocation with Ipopt for the same problem, on the first mesh with a relative error of at
-most 1e-7 in the objective; the time for coarser meshes is not counted. *Ratio* is the time of the direct method divided
-by that of satsym. Because the direct method certifies nothing, the time of satsym is taken without the certificate,
-except where the certificate found the answer. Times are in seconds of processor time; each is the minimum of three runs
-after a warm-up run, so that loading libraries is not counted.
+For each of these shipped instances, the optimum is known from a source other than satsym. satsym solves each of them
+from a cold start, without an initial guess. The differences are relative. The last section says how each optimum
+was found. `make bench-optima` writes this page.
 
 """
-HEADS = tuple("instance source independent satsym difference verdict time certified direct ratio".split())
+TIMES = """## Times
+
+The direct method is CasADi's collocation with Ipopt, for the same problem.
+
+- *satsym* is the time without the certificate, because the direct method certifies nothing. Where the certificate found
+  the answer, its time is included.
+- *certified* is the time with the certificate.
+- *direct* is the time of the direct method on the first mesh with a relative error of at most 1e-7 in the objective.
+  The time for coarser meshes is not counted.
+- *ratio* is the time of the direct method divided by that of satsym.
+
+All times are in seconds of processor time. Each is the minimum of three runs after a warm-up run, so that loading
+libraries is not counted.
+
+"""
+HEADS = tuple("instance source optimum satsym difference verdict".split())
+TIMED = tuple("instance satsym certified direct ratio".split())
+WORDS = frozenset({"instance", "source", "verdict", "direct"})
+"""Columns that contain words."""
 
 
 @dataclass(frozen=True)
@@ -141,20 +155,35 @@ def method(case: instance.Instance) -> Solution:
 
 def page(rows: list[Row]) -> str:
     """The page of the documentation."""
-    table = [HEADS, ("---",) * len(HEADS), *(one.cells for one in rows)]
-    routes = [f"- {one.name}: {one.entry['route']}." + _reason(one.entry) for one in rows]
-    lines = [f"| {' | '.join(cells)} |" for cells in table]
-    return INTRODUCTION + "\n".join([*lines, "", summary(rows), "", "## Where the optima come from", "", *routes, ""])
+    routes = {one.name: one.entry["route"] + "." + _reason(one.entry) for one in rows}
+    return page_of([one.cells for one in rows], routes, *summary(rows))
 
 
-def summary(rows: list[Row]) -> str:
-    """How many are right, how many quicker, and what all of them took."""
+def page_of(cells: list[tuple[str, ...]], routes: Mapping[str, str], agreement: str, speed: str) -> str:
+    """The page with these rows, routes and summaries."""
+    linked = [(f"[{name}](gallery/{name}.md)", *others) for name, *others in cells]
+    known = _table(HEADS, [one[: len(HEADS)] for one in linked])
+    times = _table(TIMED, [(one[0], *one[len(HEADS) :]) for one in linked])
+    found = "\n".join(f"- **{name}**: {route}" for name, route in routes.items())
+    return (
+        f"{INTRODUCTION}{known}\n{agreement}\n\n{TIMES}{times}\n{speed}\n\n## Where the optima come from\n\n{found}\n"
+    )
+
+
+def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """A table whose columns of numbers are aligned at the right."""
+    rule = ["---" if head in WORDS else "---:" for head in heads]
+    return "".join(f"| {' | '.join(line)} |\n" for line in (heads, rule, *rows))
+
+
+def summary(rows: list[Row]) -> tuple[str, str]:
+    """How many are right; how many quicker, and what all of them took."""
     right = sum(one.difference <= WITHIN for one in rows)
     ahead = sum(one.peer is not None and one.theirs > one.seconds for one in rows)
     took = sum(one.whole for one in rows)
-    agree = f"{right} of {len(rows)} optima agree to within {WITHIN:.0e};"
+    agree = f"{right} of {len(rows)} optima agree to within {WITHIN:.0e}."
     quicker = f"satsym is quicker than the direct method in {ahead} cases."
-    return f"{agree} {quicker} All solutions with their certificates took {took:.0f} s."
+    return agree, f"{quicker} All solutions with their certificates took {took:.0f} s."
 
 
 def _reason(entry: Mapping[str, Any]) -> str:
@@ -170,7 +199,7 @@ def main() -> int:
     for name in asked_for(known):
         rows.append(row(name, known[name]))
         print("  ".join(rows[-1].cells), flush=True)
-    print(summary(rows))
+    print(*summary(rows))
     if len(rows) == len(known):
         PAGE.write_text(page(rows), encoding="utf-8")
     wrong = [one.name for one in rows if not one.difference <= WITHIN or one.cells[5] != one.entry["verdict"]]
