@@ -54,7 +54,7 @@ JOINED = (2.0 / 199.0) ** 2 / 8.0 + 1e-6
 
 
 def value(page: Any, panel: int) -> float:
-    return float(page.locator(f'td[data-panel="{panel}"]').text_content().replace("−", "-"))
+    return float(page.locator(f'td[data-panel="{panel}"]').text_content().split()[0].replace("−", "-"))
 
 
 def test_the_slider_moves_the_time_of_the_table_and_of_the_curves(page: Any) -> None:
@@ -63,6 +63,7 @@ def test_the_slider_moves_the_time_of_the_table_and_of_the_curves(page: Any) -> 
     assert value(page, 0) == pytest.approx(1.0 - 0.5 * 0.5**2, abs=JOINED)
     assert value(page, 1) == pytest.approx(-0.5, abs=1e-5)
     assert value(page, 2) == -1.0, "the control, before it switches"
+    assert page.locator('td[data-panel="1"]').text_content().endswith(" m/s"), "a value has its unit"
     marked = "data.filter((d) => d.mode === 'lines+markers').map((d) => [d.x[1], d.y[1]])"
     cursors = page.evaluate(f"document.getElementById('explore-panels').{marked}")
     np.testing.assert_allclose(cursors[0], [0.5, 0.875], atol=JOINED)

@@ -14,7 +14,7 @@ import pytest
 import satsym
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
-from satsym.report.html.markup import Markup, prose
+from satsym.report.html.markup import Markup, math, prose
 from satsym.report.page import answer
 from satsym.report.page.answer import typeset
 from satsym.report.page.derived import Derived
@@ -127,15 +127,17 @@ def test_the_problem_comes_first_and_the_derivation_after_what_it_leads_to(text:
     assert order == "problem answer motion pictures certificate derivation reproduce".split()
     problem = text.partition('<section id="problem">')[2].partition("</section>")[0]
     assert "<math" in problem, "what is minimised"
-    for name, value in zip(solution.instance.model.spec.state_names, solution.instance.initial, strict=True):
-        assert re.search(rf'scope="row">{name}</th>{CELL}{value:g}</td><td>free</td>', problem), name
+    for state, value in zip(solution.instance.model.spec.states, solution.instance.initial, strict=True):
+        symbol = re.escape(math(state.latex))
+        assert re.search(rf'scope="row">{symbol}</th>{CELL}{value:g}</td><td>free</td>', problem), state.symbol
 
 
 def test_bounds_and_ranges_are_stated_with_the_problem() -> None:
     page = problem(instance.load("return-to-geo"), None, (), load("en"))
-    assert re.search(rf'scope="row">u1</th>{CELL}−4 × 10⁻⁸</td>{CELL}4 × 10⁻⁸</td><td>km/s²</td>', page)
+    u1, theta = re.escape(math("u_1")), re.escape(math(r"\theta"))
+    assert re.search(rf'scope="row">{u1}</th>{CELL}−4 × 10⁻⁸</td>{CELL}4 × 10⁻⁸</td><td>km/s²</td>', page)
     ranged = problem(instance.load("return-to-geo-window"), None, (), load("en"))
-    assert re.search(rf'scope="row">theta</th>{CELL}0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
+    assert re.search(rf'scope="row">{theta}</th>{CELL}0.000349\d+</td><td>\[6.3003\d+, 6.3004\d+\]</td>', ranged)
     assert "The motion lasts from 0 s to 86400 s." in page
     free = problem(instance.load("transfer-time"), None, (), load("en"))
     assert "the final time is free" in free

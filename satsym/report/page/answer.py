@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
+from satsym.instance import Instance
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Enclosure, Outcome, Proof
-from satsym.report.display import capitalised, number, radical, times_ten_to, unit_text
-from satsym.report.html.markup import Markup, joined, scrolled, tag
+from satsym.report.display import capitalised, norm_latex, norm_text, number, radical, times_ten_to, unit_text
+from satsym.report.html.markup import Markup, joined, math, scrolled, tag
 from satsym.report.results.objects import time_unit
-from satsym.report.said import decimal, message, say
+from satsym.report.said import counted, decimal, message, say
 from satsym.report.terminal.arcs import rows_of_arcs
 from satsym.report.terminal.certificate import competitor_rows, condition_rows, theorem_lines, verdict_text
 from satsym.report.terminal.solution import boundary, control_rows, reason, state_rows
@@ -31,9 +33,11 @@ def facts(solution: Solution, texts: Texts) -> Markup:
     instance, spec = solution.instance, spec_of(solution.instance)
     unit = unit_text(time_unit(spec) or "1")
     cost, span = _cost_and_span(solution, 10)
-    arcs: dict[str, list[str]] = {}
+    arcs: dict[str, list[Markup]] = {}
+    symbols = symbols_of(instance)
     for label, names, times in rows_of_arcs(solution, unit):
-        arcs.setdefault(label.rstrip(":").capitalize(), []).append(f"{names} {times}")
+        named = joined(*(_symbol(name, symbols) for name in names.split(", ")), by=", ")
+        arcs.setdefault(label.rstrip(":").capitalize(), []).append(joined(named, " ", with_powers(decimal(times))))
     events = "; ".join(
         f"{message(one.kind)} {one.name} {say('at <times>', times=f'{figure(one.t, 10)} {unit}'.rstrip())}"
         for one in solution.events
@@ -44,13 +48,30 @@ def facts(solution: Solution, texts: Texts) -> Markup:
         "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
         "final_time": span,
         "boundary": boundary(instance),
-        "method": f"{solution.method} ({solution.iterations})",
+        "method": f"{solution.method}, {counted(solution.iterations, 'iteration')}",
+        "events": events,
     }
-    said = {texts.get("page", key): value.strip() for key, value in known.items() if value}
-    said |= {label: "; ".join(listed) for label, listed in arcs.items()}
-    said |= {texts.get("page", "events"): events} if events else {}
-    pairs = [tag("dt", title) + tag("dd", decimal(value)) for title, value in said.items()]
+    said = {
+        texts.get("page", key): joined(with_powers(decimal(value.strip()))) for key, value in known.items() if value
+    }
+    said |= {label: joined(*listed, by="; ") for label, listed in arcs.items()}
+    pairs = [tag("dt", title) + tag("dd", value) for title, value in said.items()]
     return tag("dl", *map(Markup, pairs))
+
+
+def symbols_of(instance: Instance) -> dict[str, str]:
+    """Return the LaTeX of states, controls and bounded norms, by the names that tables give them."""
+    spec = spec_of(instance)
+    found = {v.symbol: v.latex for v in (*spec.states, *spec.controls)}
+    for norm in instance.bounded_norms:
+        parts = [spec.controls[place] for place in norm.places]
+        found[radical(norm_text([v.symbol for v in parts]))] = norm_latex([v.latex for v in parts])
+    return found
+
+
+def _symbol(name: str, symbols: Mapping[str, str]) -> Markup:
+    """Return the symbol of a quantity as a formula; a name without symbol is unchanged."""
+    return math(symbols[name]) if name in symbols else joined(name)
 
 
 def glance(solution: Solution, texts: Texts) -> Markup:
@@ -89,13 +110,14 @@ def _cost_and_span(solution: Solution, digits: int) -> tuple[str, str]:
 def states(solution: Solution, texts: Texts) -> Markup:
     """Return the initial and final value of each state, and its costate."""
     rows = state_rows(solution.instance, solution.times, solution.x, solution.lam, DIGITS)
-    return table(texts.get("page", "states"), rows)
+    return table(texts.get("page", "states"), rows, symbols_of(solution.instance))
 
 
 def controls(solution: Solution, texts: Texts) -> Markup:
     """Return the range of each control, and its bounds."""
     rows = control_rows(solution.instance, solution.times, solution.u)
-    return table(texts.get("page", "controls"), [(radical(name), *others) for name, *others in rows])
+    named = [(radical(name), *others) for name, *others in rows]
+    return table(texts.get("page", "controls"), named, symbols_of(solution.instance))
 
 
 def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
@@ -115,10 +137,14 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
     )
 
 
-def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
+NO_SYMBOLS: Mapping[str, str] = MappingProxyType({})
+"""Symbols of a table whose first column contains plain words."""
+
+
+def table(caption: str, rows: Sequence[Sequence[str]], symbols: Mapping[str, str] = NO_SYMBOLS) -> Markup:
     """Return rows below their header, without empty columns, with numbers as in print.
 
-    The first cell of each row names it.
+    The first cell of each row names it. Names that are listed with their LaTeX in ``symbols`` are set as formulas.
     """
     header, *body = rows
     body = [
@@ -130,7 +156,13 @@ def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
     look = {k: {"class_": "number"} if k and _numeric(columns[k]) else {} for k in kept}
     head = tag("tr", *(tag("th", header[k], scope="col", **look[k]) for k in kept))
     lines = [
-        tag("tr", *(tag("td", typeset(row[k]), **look[k]) if k else tag("th", row[k], scope="row") for k in kept))
+        tag(
+            "tr",
+            *(
+                tag("td", typeset(row[k]), **look[k]) if k else tag("th", _symbol(row[k], symbols), scope="row")
+                for k in kept
+            ),
+        )
         for row in body
     ]
     title = tag("caption", caption) if caption else Markup()
@@ -139,10 +171,19 @@ def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
 
 MINUS = "\N{MINUS SIGN}"
 _NUMBER = re.compile(rf"([-{MINUS}]?\d[\d.,]*)(e[-+]?\d+)?( %)?")
+_RANGE = re.compile(r"\[(\S+)([,;] )(\S+)\]")
+_POWER = re.compile(r"(?<![\w.])(\d[\d.,]*)e([-+]\d+)(?![\w.]\d)")
+
+
+def with_powers(text: str) -> str:
+    """Write powers of ten in a sentence as in print: ``error 4e-15`` as error 4 × 10⁻¹⁵."""
+    return _POWER.sub(lambda found: f"{found[1]}{times_ten_to(int(found[2]))}", text)
 
 
 def typeset(cell: str) -> str:
-    """Return a number with its sign and its power of ten as in print; other text is unchanged."""
+    """Return a number, or a range of two, with signs and powers of ten as in print; other text is unchanged."""
+    if ends := _RANGE.fullmatch(cell):
+        return f"[{typeset(ends[1])}{ends[2]}{typeset(ends[3])}]"
     found = _NUMBER.fullmatch(cell)
     if not found:
         return cell
@@ -170,7 +211,7 @@ def proof(found: Proof, texts: Texts) -> Markup:
         ]
     if found.hypotheses:
         steps = (
-            decimal(f"{capitalised(message(h.name))}: {message(h.shown)} ({message(h.value)}).")
+            with_powers(decimal(f"{capitalised(message(h.name))}: {message(h.shown)} ({message(h.value)})."))
             for h in found.hypotheses
         )
         parts += [tag("h3", texts.get("page", "hypotheses")), tag("ol", *(tag("li", step) for step in steps))]

@@ -15,6 +15,7 @@ from satsym.report.latex.equations import Context, broken, width
 from satsym.report.latex.rules import checked, listed_sources, rule
 from satsym.report.latex.statement import admissible, conditions
 from satsym.report.latex.steps import conclusion, groups_of, next_group
+from satsym.report.page.answer import typeset as printed
 from satsym.report.said import decimal
 from satsym.report.terminal.table import figure
 from satsym.report.texts import PHRASES, Texts
@@ -22,6 +23,7 @@ from satsym.spec import Variable
 from satsym.symbolic.latex.products import Term
 from satsym.symbolic.latex.typeset import Typesetter, matrices
 from satsym.symbolic.principle.effort import cost_letter
+from satsym.symbolic.principle.path.notation import rate
 
 if TYPE_CHECKING:
     from satsym.symbolic import Derivation, Step
@@ -72,6 +74,12 @@ class Derived:
         """Return what is minimised, what the model states, and its quantities, to be placed above the steps."""
         return joined(*self._statement())
 
+    def constraints(self) -> dict[str, str]:
+        """Return the symbol of each path constraint in LaTeX, by its name in words."""
+        problem, typeset = self._derivation.problem, self._context.typeset
+        stated = (problem.path_constraints or {}) if problem else {}
+        return {name.replace("_", " "): typeset.tex(rate(name, 0)) for name in stated}
+
     def steps(self) -> Markup:
         """Return each step under the heading of its section.
 
@@ -114,7 +122,7 @@ class Derived:
                 left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
                 left += rf"_{{\text{{{line.index}}}}}" if line.index else ""
                 parts = r",\; ".join(typeset.tex(part) for part in line.components)
-                right = rf"({parts})^{{\mathsf{{T}}}}" if line.components else typeset.tex(line.right)
+                right = rf"\left({parts}\right)^{{\mathsf{{T}}}}" if line.components else typeset.tex(line.right)
                 yield scrolled(math(f"{left} = {right}", block=True))
         yield self._quantities()
         yield from self._definitions()
@@ -160,7 +168,7 @@ class Derived:
             tag("td", math(v.latex)),
             tag("th", tag("code", v.symbol), scope="row"),
             tag("td", unit),
-            tag("td", "" if value is None else decimal(figure(value, 10)), class_="number"),
+            tag("td", "" if value is None else printed(decimal(figure(value, 10))), class_="number"),
             tag("td", said, lang=self._texts.language if self._texts.find(PHRASES, v.meaning) else "en"),
         )
 

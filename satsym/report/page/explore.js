@@ -288,7 +288,9 @@
     slider.setAttribute("aria-valuetext", stated.textContent);
     reading.querySelectorAll("td[data-panel]").forEach((cell) => {
       const panel = current.panels[cell.dataset.panel];
-      cell.textContent = number(at(panel.values, there), Math.max(Math.abs(panel.low), Math.abs(panel.high)));
+      const value = number(at(panel.values, there), Math.max(Math.abs(panel.low), Math.abs(panel.high)));
+      const unit = / \[(.*)\]$/.exec(panel.label)?.[1] ?? "";
+      cell.textContent = `${value} ${unit}`.trim();
     });
   };
   /** Set the animation of the page's own solution to this time. */
@@ -346,7 +348,7 @@
     current.panels.forEach((panel, k) => {
       const row = document.createElement("tr"), name = document.createElement("th"), cell = document.createElement("td"), about = document.createElement("td");
       name.scope = "row";
-      name.innerHTML = panel.label; // escaped where it was made, but for indices
+      name.innerHTML = panel.label.replace(/ \[(.*)\]$/, ""); // escaped where it was made, but for indices
       cell.dataset.panel = k;
       about.innerHTML = panel.meaning;
       row.append(name, cell, about);

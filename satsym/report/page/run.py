@@ -118,7 +118,7 @@ def _rendered(
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
     said = say(authored)
-    title = raised(said)
+    title = raised(answer.with_powers(said))
     parts = _sections(solution, derivation, given, texts, explored, proof)
     shown = {name: part for name, part in parts.items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
@@ -298,13 +298,18 @@ def problem(instance: Instance, statement: Derived | None, values: Sequence[str]
     values
         What stands in place of numbers of the file, each as ``KEY=VALUE``.
     """
+    symbols, limits = answer.symbols_of(instance), _constraints(instance)
+    marks = statement.constraints() if statement else {}
+    if statement:
+        limits = [(texts.get("words", "symbol").lower(), *limits[0]), *((row[0], *row) for row in limits[1:])]
     return joined(
         statement.statement() if statement else "",
         tag("h3", texts.get("page", "instance")),
-        answer.table(texts.get("page", "conditions"), _conditions(instance, texts)),
-        answer.table(texts.get("page", "admissible"), rows)
+        answer.table(texts.get("page", "conditions"), _conditions(instance, texts), symbols),
+        answer.table(texts.get("page", "admissible"), rows, symbols)
         if len(rows := _admissible(instance)) > 1
         else tag("p", texts.get("page", "unbounded")),
+        answer.table(texts.get("page", "constraints"), limits, marks) if len(limits) > 1 else "",
         tag("p", _times(instance, texts)),
         _instance_file(instance, values, texts),
     )
@@ -335,7 +340,7 @@ def _final(instance: Instance, name: str) -> str:
 
 
 def _admissible(instance: Instance) -> list[tuple[str, ...]]:
-    """Return a table with a row for each bound of controls and each path constraint."""
+    """Return a table with a row for each bound of controls."""
     spec = spec_of(instance)
     rows: list[tuple[str, ...]] = [(say("control"), say("lower bound"), say("upper bound"), say("unit"))]
     for variable, *bounds in zip(spec.controls, instance.lower, instance.upper, strict=True):
@@ -345,8 +350,13 @@ def _admissible(instance: Instance) -> list[tuple[str, ...]]:
         lower = figure(norm.lower) if norm.lower else ""
         named = radical(norm_text([spec.control_names[i] for i in norm.places]))
         rows.append((named, lower, figure(norm.upper), spec.controls[norm.places[0]].unit))
-    rows += [(name.replace("_", " "), "", "0", "1") for name in stated_constraints(spec)]
     return rows
+
+
+def _constraints(instance: Instance) -> list[tuple[str, ...]]:
+    """Return a table with a row for each path constraint: its name in pictures and results, and its upper bound."""
+    names = stated_constraints(spec_of(instance))
+    return [(say("path constraint"), say("upper bound")), *((name.replace("_", " "), "0") for name in names)]
 
 
 def _times(instance: Instance, texts: Texts) -> str:
