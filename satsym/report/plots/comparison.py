@@ -58,7 +58,11 @@ def page(cases: Sequence[Case]) -> Figure | None:
     pairs = 2 // columns
     rows = below + pairs * (several + (law is not None))
     own = len(cases) == 1 or all(case.instance.driven for case in cases)
-    title = cases[0].instance.title if own else say("comparison of <number> instances", number=len(cases))
+    title = (
+        cases[0].instance.title
+        if own
+        else display.capitalised(say("comparison of <number> instances", number=len(cases)))
+    )
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, columns)
     measures = _measures(answered, panels)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.plots import style
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
-from satsym.report.plots.series import PASSED, SWITCHED, Series
+from satsym.report.plots.series import PASSED, REACHED, SWITCHED, Series
 from satsym.report.said import say
 
 if TYPE_CHECKING:
@@ -45,8 +45,10 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
         found.append((line(**style.TARGET), say("final condition")))
     if any(q.active is not None or q.forbidden for q in quantities):
         found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
-    if any(q.active is not None and q.active.any() for q in quantities):
-        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), say("saturated")))
+    shaded = [q for q in quantities if q.active is not None and q.active.any()]
+    for limited, said in ((False, say("saturated")), (True, say("constraint active"))):
+        if any((q.said == REACHED) is limited for q in shaded):
+            found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), said))
     found += [(line(color=shade, **style.SWITCHING), text) for shade, text in _marked(quantities, colour)]
     return found
 

@@ -128,9 +128,8 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
     columns = style.columns(len(quantities), wanted, ROW)
     rows = -(-len(quantities) // columns)
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 1.2 + ROW * rows)
-    small_multiples(
-        page, scene, [(quantity, colour) for quantity in quantities], columns, title=style.room(page, columns)
-    )
+    panels = [(quantity, colour) for quantity in quantities]
+    small_multiples(page, scene, panels, columns, title=style.room(page, columns), whole=style.room(page, 1))
     beside = any(q.free is not None or q.reference is not None for q in quantities)
     entries = legend.motion(scene, colour) if beside else []
     legend.below(page, entries + legend.on_axes(quantities, colour))
@@ -172,7 +171,8 @@ def overview(scene: Scene) -> Figure | None:
     # an axis of a body on the sphere has the colour of states, whose panels need no entry
     entries = legend.motion(scene, style.STATE)[int(shown is None and turning is not None) :]
     entries += space.entries(shown) if shown is not None else attitudes.entries() if turning is not None else []
-    legend.below(page, entries + legend.on_axes([*states, *controls, *limits], style.CONTROL))
+    entries += legend.on_axes([*states, *controls], style.CONTROL)
+    legend.below(page, entries + legend.on_axes(limits, style.INVARIANT))
     return page
 
 

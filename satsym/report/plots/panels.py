@@ -32,8 +32,15 @@ def small_multiples(
     quantities: Sequence[tuple[Series, str]],
     columns: int,
     title: float = 0.0,
+    whole: float = 0.0,
 ) -> None:
-    """Draw quantities, each in its colour, in rows over a common time; a single last one fills its row."""
+    """Draw quantities, each in its colour, in rows over a common time; a single last one fills its row.
+
+    Parameters
+    ----------
+    title, whole
+        Inches on a screen above a panel for its title, and above a panel that fills its row; 0 for no titles.
+    """
     rows = -(-len(quantities) // columns)
     grid = part.add_gridspec(rows, columns)
     shown = _read(quantities)
@@ -41,7 +48,7 @@ def small_multiples(
         row, column = divmod(i, columns)
         alone = i == len(quantities) - 1 and column == 0
         axes = part.add_subplot(grid[row, :] if alone else grid[row, column])
-        against_time(axes, scene, quantity, shown[i], colour, title)
+        against_time(axes, scene, quantity, shown[i], colour, whole if alone and columns > 1 else title)
         if row == rows - 1:
             axes.set_xlabel(labelled("$t$", scene.time_unit))
         elif i + columns < len(quantities) and (row < rows - 2 or len(quantities) % columns != 1 or columns == 1):

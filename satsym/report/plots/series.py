@@ -32,6 +32,7 @@ STEP = 1e-30
 """Relative size of complex steps."""
 
 SWITCHED, PASSED = "switching at <times>", "waypoints passed at <times>"
+REACHED = "met or left at <times>"
 """English descriptions of the marked times of a quantity."""
 
 
@@ -183,7 +184,7 @@ def constraints(scene: Scene) -> list[Series]:
             upper=0.0,
             active=rows[k] >= -ON_BOUND * _largest(rows[k]),
             switching=tuple(event.t / scene.time_factor for event in met if event.name == name),
-            said="reached at <times>",
+            said=REACHED,
             from_zero=True,
         )
         for name, k in stated.items()

@@ -341,7 +341,12 @@ def broken(text: str, wide: float, size: float = TITLE, most: int | None = None)
     """
     if re.search(r"\$[^$ ]* [^$]*\$", text):
         return text
-    return "\n".join(_lines(line, wide, size, most) for line in text.splitlines())
+    return "\n".join(_lines(_MEASURED.sub(_FIXED, line), wide, size, most) for line in text.splitlines())
+
+
+_MEASURED = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=\S)|(?<=×) ")
+"""A space within a number with its power of ten, or between a number and its unit."""
+_FIXED = "\N{NO-BREAK SPACE}"
 
 
 def _lines(line: str, wide: float, size: float, most: int | None) -> str:
@@ -353,8 +358,18 @@ def _lines(line: str, wide: float, size: float, most: int | None) -> str:
     while True:
         filled = textwrap.fill(line, letters, break_long_words=False, max_lines=most, placeholder=dots)
         if letters <= FEWEST or all(length(each, size) <= wide for each in filled.splitlines()):
-            return filled
+            return filled if most is not None else _balanced(line, letters, filled)
         letters -= 1
+
+
+def _balanced(line: str, letters: int, filled: str) -> str:
+    """Return a broken line with no more lines than before, but of similar lengths."""
+    for fewer in range(letters - 1, FEWEST, -1):
+        found = textwrap.fill(line, fewer, break_long_words=False)
+        if found.count("\n") > filled.count("\n") or max(map(len, found.splitlines())) > letters:
+            break
+        filled = found
+    return filled
 
 
 def contents(name: str, page: Figure) -> dict[str, files.Content]:
