@@ -9,7 +9,9 @@ CARD = "-card"
 OVER_TIME = "catalyst", "chain"
 """Instances whose first state over time tells more than it does over the second."""
 WIDE, HIGH = 3.5, 2.8
-"""Size of a card, in inches."""
+"""Width and height of a card, whose ratio counts."""
+LETTERS = 0.34
+"""Width of a card as a fraction of a page; the smaller it is, the larger letters are on the card."""
 
 
 def of_motion(case: Any, folder: Path) -> dict[str, str]:
@@ -91,7 +93,7 @@ def _compared(axes: Any, case: Any) -> None:
 def _empty() -> Any:
     from satsym.report.plots import style
 
-    return style.figure(style.WIDTH / 2, style.WIDTH / 2 * HIGH / WIDE)
+    return style.figure(LETTERS * style.WIDTH, LETTERS * style.WIDTH * HIGH / WIDE)
 
 
 def _card(scene: Any) -> Any:
