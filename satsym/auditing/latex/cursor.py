@@ -200,7 +200,7 @@ class Cursor(ABC):
             return inside
         if token.kind == "number" and len(token.text) > 1:
             if self._peek(-2).text in ("^", "_"):
-                raise Unread("an exponent or an index of several digits needs braces", token.at)
+                raise Unread("an exponent or an index of several characters needs braces", token.at)
             return [self._first_digit(token)]
         if token.is_macro(DECORATIONS - MARKS.keys() | UPRIGHT):
             return [token, *self._group()]

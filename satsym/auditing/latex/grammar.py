@@ -18,8 +18,8 @@ from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines
-from satsym.auditing.latex.tokens import Token, Unread, braced
-from satsym.auditing.latex.words import CONSTANT, SAID, UNITS
+from satsym.auditing.latex.tokens import Token, Unread, braced, group_at
+from satsym.auditing.latex.words import CALLED, CONSTANT, RELATIONS, SAID, SPELLED, STYLES, UNITS, UPRIGHT
 from satsym.formula.tree import ZERO, Call, Equality, Grid, Mul, Node, Pow, Sym, calls_in, cells, children, walk
 
 _READINGS = 3
@@ -31,6 +31,8 @@ _GROUPS = frozenset("Re Fr Pr Nu Pe We Ro Kn St Bi Bo Sc Sh".split())
 """Names of dimensionless numbers that are printed as two letters."""
 _UNITS = frozenset("rad deg kg Hz rpm mol".split())
 """Units of several letters that hardly ever are products of these letters."""
+_SERIES = "xyz", "pid", "rpy"
+"""Letters that number the members of a series, such as the gains of a controller."""
 _SIGNS = frozenset(("cdot", "*"))
 """Multiplication signs: an author who writes them next to adjacent letters does not mean a product of these letters."""
 
@@ -164,6 +166,7 @@ def capitals(found: Sequence[Token]) -> list[str]:
 def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     """Refuse adjacent capitals that could be a name or a product, as in ``SO(3)`` or on the left of a definition."""
     for part in line:
+        refuse_sums_in_capitals(part)
         unit = [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS
         if unit and part[1].at > part[0].at + len(part[0].text) + 1:  # set apart
             raise Unread("this could be a unit or a factor; set units upright", part[1].at)
@@ -172,7 +175,10 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
             ends = part[first - 1].at + len(part[first - 1].text) if first else 0
             apart = first == 0 or part[first].at > ends, not behind or behind[0].at > part[last - 1].at + 1
-            if name in _UNITS and first and part[first - 1].kind in ("number", "close"):
+            measured = first > 0 and part[first - 1].kind == "number" and name in UNITS
+            measured &= not _is_labelled(part, first)
+            measured &= not behind or behind[0].text in "/^,;)]" or behind[0].text in RELATIONS
+            if measured or (name in _UNITS and first and part[first - 1].kind in ("number", "close")):
                 raise Unread("this could be a unit or a factor; set units upright", part[first].at)
             spelled = len(name) >= _LONG_WORD and name not in CONSTANT and not grouped
             spelled &= sum(letter in "aeiou" for letter in name) > 1
@@ -183,6 +189,7 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             called |= len(name) > 2 and name.isupper() and first == 0 and part[-1].text == ")"
             doubtful = called and bool(behind) and behind[0].text in ("(", "_")
             doubtful |= name in _GROUPS and beside <= {"(", ")", ","}
+            doubtful |= _is_spelled(part, first, last) or _is_in_series(line, name)
             if name.isupper():
                 doubtful |= len(name) == len(part) and (len(name) > 2 or len(line) > 2)
                 doubtful |= [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
@@ -195,6 +202,58 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     if begin == 0 and all(t.text.isupper() for t in side[:end]) and (end == len(side) or side[end].text == "_"):
         name = "".join(t.text for t in side[:end])
         raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product, {' '.join(name)}", side[0].at)
+
+
+def _is_spelled(part: Sequence[Token], first: int, last: int) -> bool:
+    """Return whether adjacent letters could be a word: three or more with a vowel, none of which occurs elsewhere."""
+    letters = [t.text for t in part[first:last]]
+    if _is_labelled(part, first) or any(name in "".join(letters) for name in (*SPELLED, *CALLED, "const")):
+        return False
+    inner = letters[1:] if letters[0].isupper() else letters
+    worded = len(letters) > 2 and all(map(str.islower, inner)) and any(letter in "aeiou" for letter in inner)
+    return worded and "d" not in letters[::2] and len(set(letters)) == len(letters)
+
+
+def _is_labelled(part: Sequence[Token], k: int) -> bool:
+    """Return whether a token is in an index, or in letters that are set upright or as a vector."""
+    depth = 0
+    for place in range(k - 1, 0, -1):
+        depth += part[place].group
+        if depth > 0:
+            depth = 0
+            before = part[place - 1]
+            if before.is_sign("_^") or before.is_macro(UPRIGHT | STYLES.keys()):
+                return True
+    return False
+
+
+def _is_in_series(line: Sequence[Sequence[Token]], name: str) -> bool:
+    """Return whether two letters could be a name with an index, as ``Kp`` beside ``Kd`` or ``Ix`` beside ``Iy``."""
+    if len(name) != 2 or not name[0].isupper():
+        return False
+    runs = {"".join(t.text for t in part[a:b]) for part in line for a, b in _runs(part)}
+    alone = {t.text for part in line for k, t in enumerate(part) if t.kind == "letter" and not _touches(part, k)}
+    series = next((letters for letters in _SERIES if name[1] in letters), "")
+    others = {run[1] for run in runs if len(run) == 2 and run[0] == name[0] and run[1] in series}
+    return len(others) > 1 and not alone & others
+
+
+def _touches(part: Sequence[Token], k: int) -> bool:
+    """Return whether a letter is next to another letter."""
+    beside = [part[j] for j in (k - 1, k + 1) if 0 <= j < len(part)]
+    return any(t.kind == "letter" and abs(t.at - part[k].at) == 1 for t in beside)
+
+
+def refuse_sums_in_capitals(part: Sequence[Token]) -> None:
+    """Refuse a capital sigma or pi that could be a sign of a sum or product, as in a sum of forces."""
+    for k, token in enumerate(part):
+        if not token.is_macro(("Sigma", "Pi")):
+            continue
+        below = group_at(part, k + 2)[0] if k + 2 < len(part) and part[k + 1].text == "_" else []
+        behind = part[k + 1].text if k + 1 < len(part) else ""
+        forces = k == 0 and token.text == "Sigma" and behind in ("F", "M", "tau", "vec", "T")
+        if forces or any(t.text == "=" for t in below):
+            raise Unread("this capital letter could be a sign of a sum or product; write \\sum or \\prod", token.at)
 
 
 def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:

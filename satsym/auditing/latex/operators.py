@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import MIXED_BRACKETS, listed
-from satsym.auditing.latex.letters import GREEK, Letter
+from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import END, Token, Unread, environment, group_end
 from satsym.auditing.latex.words import FUNCTIONS, MATRICES, OPTIMA
 from satsym.formula.reading import MAX_EXPONENT
-from satsym.formula.tree import ZERO, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, constant, symbols
+from satsym.formula.tree import ZERO, Add, Call, Div, Grid, Mul, Neg, Node, Num, Pow, Sym, calls_in, constant
 from satsym.wording import printable
 
 
@@ -31,6 +32,8 @@ class OperatorCursor(QuotientCursor):
         begin, found = self._i, self._found
         inside = self._group() if self._peek() is not END else []
         if len(inside) == 1 and inside[0].kind == "number":
+            if inside[0].text != "0":
+                raise Unread("a bold number other than zero could be a vector or a matrix", inside[0].at)
             if inside[0].text == "0" and self._accept("_"):
                 self._script()
             return Num(Fraction(inside[0].text))
@@ -58,6 +61,7 @@ class OperatorCursor(QuotientCursor):
 
     def _optimum(self, token: Token) -> Node:
         """Read a limit, minimum or maximum of the following expression over the subscript."""
+        begun = any(t.kind != "open" for t in self._found[: self._i - 1])
         below = self._limits().get("_", [])
         while below and below[0].kind == "open" and group_end(below, 0) == len(below):
             below = below[1:-1]
@@ -66,9 +70,17 @@ class OperatorCursor(QuotientCursor):
             if len(sides) != 2:
                 raise Unread("a limit needs an arrow below it", token.at)
             ends = [self._limit(side, token.at) for side in sides]
-            return Call("limit", (self._product(), *ends))
+            operand = self._product()
+            if self._peek().text in ("+", "-"):
+                raise Unread(words.OPERAND_ENDS, self._here)
+            return Call("limit", (operand, *ends))
         over = self._condition(below, token.at)
-        return Call(OPTIMA[token.text], (self._sum(), *listed(over)))
+        sign = self._here
+        operand = self._sum()
+        optima = [call for call in calls_in(operand) if call.function in OPTIMA.values()]
+        if isinstance(operand, Add) and (begun or optima):
+            raise Unread(words.OPERAND_ENDS, sign)
+        return Call(OPTIMA[token.text], (operand, *listed(over)))
 
     def _limits(self) -> dict[str, list[Token]]:
         limits: dict[str, list[Token]] = {}
@@ -183,7 +195,12 @@ class OperatorCursor(QuotientCursor):
             signed = before.kind in ("sign", "open") and before.text not in ")]'"
             if not signed and before.kind != "number" and before.text not in words.SIGNS:
                 raise Unread("arguments in brackets after this expression are not supported", at)
-        if len(arguments) == 1 and square and self._is("(") and self._is_place_next():
+        if square and begin and self._peek() is END and self._are_units(begin):
+            raise Unread("this could be a unit in square brackets; leave it out, or set it upright", at)
+        timed = (
+            isinstance(inner, Add) and self._is("(") and self._peek(1).text in ("t", "k", "tau") and self._is(")", 2)
+        )
+        if len(arguments) == 1 and (timed or (square and self._is("(") and self._is_place_next())):
             raise Unread("arguments in brackets after this expression are not supported", at)
         if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
@@ -201,6 +218,14 @@ class OperatorCursor(QuotientCursor):
         nested = [isinstance(argument, Grid) for argument in arguments]
         alone = begin == 0 and (self._peek() is END or self._peek().text in ("|", "vert", "rvert"))
         return (any(nested) and not all(nested)) or not (alone or self._is("^"))
+
+    def _are_units(self, begin: int) -> bool:
+        """Return whether the bracket that was read contains only units, such as m/s or kg."""
+        said = "".join(t.text for t in self._found[begin + 1 : self._i - 1] if t.kind not in ("open", "close"))
+        parts = re.split(r"[^A-Za-z]+", said.replace("cdot", " "))
+        before = self._at(begin - 1)
+        apart = before.kind == "number" or self._found[begin].at > before.at + len(before.text) + 1
+        return apart and before.text != "]" and all(part in words.UNITS for part in parts if part) and any(parts)
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Return whether a bracket with one letter or function follows a letter, as in an expectation."""
@@ -250,51 +275,6 @@ class OperatorCursor(QuotientCursor):
             return Call("det", (Grid(tuple(entries)),))
         return Grid(tuple(entries))
 
-    def _timed_behind_power(self, base: Node) -> Node:
-        """Read ``(t)`` after a power of a letter.
-
-        Other arguments are read only after a superscript that is an index.
-        """
-        begin = self._i
-        end = self._bracket_end()
-        inside = self._found[begin + 1 : end]
-        words_inside = "".join(t.text for t in inside)
-        if words_inside in words.TIMES_OF_ANGLES:
-            return base
-        if isinstance(base, Pow) and words_inside in words.AT_A_TIME and (letter := self._squared(base)):
-            self._i = begin
-            taken = self._taken_at(letter)
-            return Pow(Call("value", (base.base, *taken)), base.exponent) if taken else base
-        turned = isinstance(base, Call) and base.function == "transpose" and base.arguments[0]
-        if isinstance(turned, Sym):  # R^T(x) is R(x)^T
-            self._i = begin
-            taken = self._taken_at(self._reading.letters[turned.name])
-            return Call("transpose", (Call("value", (turned, *taken)),)) if taken else base
-        places = split(inside, lambda token: token.text == ",")
-        timed = words_inside in words.AT_A_TIME
-        inverse = isinstance(base, Pow) and constant(base.exponent) == -1 and not symbols(base.base) & words.FIELDS
-        raised = isinstance(base, Call) and base.function == "raised"
-        if raised and symbols(base) & words.FIELDS and any(t.text in "+-" for t in inside):
-            raise Unread("the argument in brackets after this letter is not supported", self._found[begin].at)
-        if (raised and timed) or ((raised or inverse) and all(map(self._place, places))):
-            return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
-        if timed or self._place(inside) is not None or self._is_taken(inside):
-            raise Unread(
-                "powers between a function and its argument, as in x^2(t), are not supported", self._found[begin].at
-            )
-        self._i = begin
-        return base
-
-    def _squared(self, power: Pow) -> Letter | None:
-        """Return the letter of a power.
-
-        Return ``None`` if its powers could mean something else, e.g. iterates of a function.
-        """
-        letter = self._letter_of(power.base)
-        exponent = constant(power.exponent)
-        unclear = letter is None or letter.base in words.FIELDS or letter.base in ("delta", "T", *words.ARGUED)
-        return None if unclear or exponent is None or exponent < 2 else letter
-
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
         if not script:
             return base
@@ -313,7 +293,7 @@ class OperatorCursor(QuotientCursor):
         value = constant(exponent)
         if value is None and (constant(base) is not None or base == Sym("pi")):
             return Call("power", (base, exponent))
-        if base == Sym("e") and len(script) == 1 and script[0].text in "ijklmn":
+        if base == Sym("e") and len(script) == 1 and script[0].text in "abcdefghijklmnoBNI":
             raise Unread("this could be a power of a variable e or an exponential; write \\exp for the exponential", at)
         if isinstance(base, Sym) and base.name == "e" and value not in words.OF_ECCENTRICITIES:
             return Call("exp", (exponent,))

@@ -84,6 +84,7 @@ class Parser(SumCursor):
         """Read the right operand of a multiplication sign into a product, and return the last vector product."""
         self._i += 1
         before, product = chain[-1], words.OF_VECTORS.get(sign.text)
+        last = self._peek(-2)
         if product and self._is_vector(before):
             field = isinstance(before, Call) and before.function in ("curl", "divergence")
             if (crossed in ("cross", "dot") and "cross" in (product, crossed)) or field:
@@ -91,6 +92,13 @@ class Parser(SumCursor):
             chain[-1] = self._of_vectors(product, before, sign)
             return product
         chain.append(self._signed_factor())
+        if chain[-1] == Sym("nabla"):
+            raise Unread("a nabla on its own is not a quantity", sign.at)
+        numbers = any(constant(side) is not None for side in (before, chain[-1]))
+        convolved = last.text == self._found[self._i - 1].text == ")"  # of x(t) and y(t)
+        convolved |= any(letter and letter.base == "q" for letter in map(self._letter_of, (before, chain[-1])))
+        if (sign.text in ("ast", "odot", "bullet") or (sign.text == "*" and convolved)) and not numbers:
+            raise Unread("this sign could be a convolution or another product; write \\cdot for a product", sign.at)
         scalar = crossed == "number" or any(constant(side) is not None for side in (before, chain[-1]))
         if sign.text == "times" and not scalar and not isinstance(before, Grid):
             right = [chain.pop()]
@@ -109,7 +117,7 @@ class Parser(SumCursor):
         self._i += 1
         following = self._peek()
         if slash.text == ":" and not (isinstance(chain[-1], Num) and following.kind == "number"):
-            raise Unread("a colon is not supported here", slash.at)
+            raise Unread("this colon could be a ratio or a tensor product; write a fraction or components", slash.at)
         divisor, unit = self._signed_factor(), self._peek()
         if isinstance(divisor, Num) and unit.text in words.UPRIGHT:
             raise Unread("units after a slash are not supported", unit.at)
@@ -124,7 +132,8 @@ class Parser(SumCursor):
             return (
                 letter is not None and letter.base == "D" and any(rf"\{style}" in letter.foot for style in words.BOLD)
             )
-        return letter.index.rstrip("_0123456789") in words.FIELDS
+        scripted = "cal" in letter.style and letter.index[:1].isalpha()
+        return scripted or letter.index.rstrip("_0123456789") in words.FIELDS
 
     def _applied(self, operator: Node) -> Node:
         """Read what an operator is applied to, which may be another operator with its operand."""
@@ -204,6 +213,8 @@ class Parser(SumCursor):
                 else:
                     base = Call("indexed", (base, self._indices_of(script, at)))
             elif self._is("'") and not self._is("'", 1) and self._has_matrix(base):
+                if not (self._reading.transposing or self._is_vector(base) or self._begins_factor(self._peek(1))):
+                    raise Unread(words.PRIMED, self._here)
                 self._reading.transposing = self._accept("'")
                 base = Call("transpose", (base,))
             elif self._is("'") and not isinstance(base, Num):
@@ -257,7 +268,9 @@ class Parser(SumCursor):
                 return Sym(CONSTANT)
             if (called := self._spelled_function(token)) is not None:
                 return called
-            after = self._peek()
+            after, before = self._peek(), self._peek(-2)
+            if (before.text, before.at) == (token.text, token.at - 1) and self._peek(-3).is_sign("_"):
+                raise Unread("an exponent or an index of several characters needs braces", before.at)
             if (after.text, after.at) == (token.text, token.at + 1) and self._is("_", 1):
                 raise Unread("a doubled letter with an index could be one name", token.at)
             differs = after.kind == "letter" or after.text in GREEK or after.text in words.STYLES

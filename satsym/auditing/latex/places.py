@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from satsym.auditing.latex.arguments import may_be_argument
 from satsym.auditing.latex.cursor import bar_in, listed
 from satsym.auditing.latex.letters import GREEK, Letter, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.rows import relation_in, split
 from satsym.auditing.latex.tokens import Token, Unread, has_bold
-from satsym.auditing.latex.words import ARGUED, AT_A_TIME, COUNTERS, DOUBLE_SIGNS, LAPSED, SHIFTED, STYLES
-from satsym.formula.tree import Call, Node, Sym
+from satsym.auditing.latex.words import (
+    ARGUED,
+    ARGUMENT_OR_FACTOR,
+    AT_A_TIME,
+    COUNTERS,
+    DOUBLE_SIGNS,
+    FIELDS,
+    LAPSED,
+    PRIMED,
+    SHIFTED,
+    STYLES,
+    TIMES_OF_ANGLES,
+)
+from satsym.formula.tree import Call, Node, Pow, Sym, constant, symbols
 
 _ORDERS = (Letter("O"), Letter("O", style="cal"))
 """Letters that denote an order of magnitude."""
+
+_OF_INDICES = re.compile(r"[()\[\]<>.;!?]|\\\\(?:to|[lg]e|in|.*arrow|langle|rangle)(?![a-z])")
+"""Pattern of the signs in an index that its name does not show."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +56,11 @@ class PlaceCursor(LetterCursor):
     def _symbol(self, letter: Letter, at: int) -> Node:
         if self._reading.transposing and letter.marks[-1:] == ("prime",) and self._is_transposed(letter):
             return Call("transpose", (self._symbol(replace(letter, marks=letter.marks[:-1]), at),))
+        matrix = letter.marks[-1:] == ("prime",) and letter.marks.count("prime") == 1
+        matrix &= letter.bold or (letter.base.isupper() and not letter.dots)
+        behind = self._peek()
+        if matrix and not self._reading.lenient and self._begins_factor(behind) and not behind.is_sign("([|"):
+            raise Unread(PRIMED, at)
         name = letter.name
         if letter.base == "pi" and letter == Letter("pi"):
             if self._is("(") and self._is_place_next():
@@ -49,7 +71,9 @@ class PlaceCursor(LetterCursor):
         if letter in _ORDERS and self._is("(") and (order := self._order_of_magnitude(letter)) is not None:
             return order
         places = self._taken_at(letter)
-        self._reading.letters.setdefault(name, letter)
+        known = self._reading.letters.setdefault(name, letter)
+        if _foot(known) != _foot(letter) and not self._reading.lenient:
+            raise Unread("two letters differ only in the signs of their indices; give them other indices", at)
         return Call("value", (Sym(name), *places)) if places else Sym(name)
 
     def _is_transposed(self, letter: Letter) -> bool:
@@ -94,7 +118,8 @@ class PlaceCursor(LetterCursor):
             self._i = begin
             return ()
         if not self._is_surely_taken(letter, bracket) and not self._is_shift(letter, inside):
-            if self._may_be_taken(letter, inside) or letter.style == "cal":
+            doubtful = self._may_be_taken(letter, inside) or letter.style == "cal"
+            if doubtful or may_be_argument(letter, inside, self._is("^")):
                 self._refuse_argument(self._found[begin].at)
             self._i = begin
             return ()
@@ -178,6 +203,57 @@ class PlaceCursor(LetterCursor):
             return listed(self._condition(inside, at))
         return tuple(self._inner(place, at) for place in bracket.places)
 
+    def _timed_behind_power(self, base: Node) -> Node:
+        """Read ``(t)`` after a power of a letter.
+
+        Other arguments are read only after a superscript that is an index.
+        """
+        begin = self._i
+        end = self._bracket_end()
+        inside = self._found[begin + 1 : end]
+        words_inside = "".join(t.text for t in inside)
+        if words_inside in TIMES_OF_ANGLES:
+            return base
+        if isinstance(base, Pow) and words_inside in AT_A_TIME and (letter := self._squared(base)):
+            self._i = begin
+            taken = self._taken_at(letter)
+            return Pow(Call("value", (base.base, *taken)), base.exponent) if taken else base
+        turned = isinstance(base, Call) and base.function == "transpose" and base.arguments[0]
+        if isinstance(turned, Sym):  # R^T(x) is R(x)^T
+            self._i = begin
+            summed = len(split(inside, lambda t: t.is_sign("+-"))) > 1 and not {"t", "k"} & {t.text for t in inside}
+            if summed and not self._reading.letters[turned.name].base.isupper():  # of a vector, a factor follows
+                return base
+            taken = self._taken_at(self._reading.letters[turned.name])
+            return Call("transpose", (Call("value", (turned, *taken)),)) if taken else base
+        places = split(inside, lambda token: token.text == ",")
+        timed = words_inside in AT_A_TIME
+        inverse = isinstance(base, Pow) and constant(base.exponent) == -1 and not symbols(base.base) & FIELDS
+        raised = isinstance(base, Call) and base.function == "raised"
+        if raised and symbols(base) & FIELDS and any(t.text in "+-" for t in inside):
+            raise Unread(ARGUMENT_OR_FACTOR, self._found[begin].at)
+        if (raised and timed) or ((raised or inverse) and all(map(self._place, places))):
+            return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
+        if timed or self._place(inside) is not None or self._is_taken(inside):
+            raise Unread(
+                "powers between a function and its argument, as in x^2(t), are not supported", self._found[begin].at
+            )
+        letter = self._letter_of(base, power=True)
+        if letter is not None and may_be_argument(letter, inside, False) and set(words_inside) & {"t", "k"}:
+            raise Unread(ARGUMENT_OR_FACTOR, self._found[begin].at)
+        self._i = begin
+        return base
+
+    def _squared(self, power: Pow) -> Letter | None:
+        """Return the letter of a power.
+
+        Return ``None`` if its powers could mean something else, e.g. iterates of a function.
+        """
+        letter = self._letter_of(power.base)
+        exponent = constant(power.exponent)
+        unclear = letter is None or letter.base in FIELDS or letter.base in ("delta", "T", *ARGUED)
+        return None if unclear or exponent is None or exponent < 2 else letter
+
     def _all_known(self) -> set[str]:
         """Return the arguments with which the letters of the formula are printed."""
         return set[str]().union(*self._reading.known.values())
@@ -185,7 +261,7 @@ class PlaceCursor(LetterCursor):
     def _refuse_argument(self, at: int) -> None:
         """Refuse a bracket of which it is not sure whether it is an argument, unless a second reading follows."""
         if not self._reading.lenient:
-            raise Unread("the argument in brackets after this letter is not supported", at)
+            raise Unread(ARGUMENT_OR_FACTOR, at)
 
     def _is_place_next(self) -> bool:
         """Return whether the next bracket contains a single letter."""
@@ -255,6 +331,11 @@ class PlaceCursor(LetterCursor):
         while first is not None and inner._is("^"):
             inner._i = inner._script_end()
         return first is not None and (inner._peek().kind in ("letter", "macro") or inner._is("("))
+
+
+def _foot(letter: Letter) -> str:
+    """Return the brackets and arrows in the index of a letter, which its name does not show."""
+    return "".join(_OF_INDICES.findall(letter.foot))
 
 
 def _is_scalar(letter: Letter) -> bool:

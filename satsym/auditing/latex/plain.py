@@ -57,7 +57,7 @@ def plain_tokens(text: str, is_known: Callable[[Letter], bool]) -> list[Token]:
         elif kind == "word":
             found += _word(value, len(match["primes"]), at, text[match.end() :].lstrip()[:1], is_known)
         elif kind == "sign":
-            found += characters(value, at)
+            found += [Token("macro", "cdot", at)] if value == "*" else characters(value, at)
         elif kind == "power":
             found += [Token("sign", "^", at), *([Token("sign", value[-1], at)] if value[-1] in "+-" else [])]
         else:

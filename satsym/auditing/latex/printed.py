@@ -8,10 +8,28 @@ from dataclasses import replace
 from satsym.auditing.latex.cursor import Cursor
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned, is_name
 from satsym.auditing.latex.tokens import END, Token, Unread, braced, group_end, in_tex
-from satsym.auditing.latex.words import ACCENTS, DECORATIONS, INDICES, MARKS, STARS, STYLES, TRANSPOSED, UPRIGHT
+from satsym.auditing.latex.words import (
+    ACCENTS,
+    BARS,
+    CLOSING,
+    DECORATIONS,
+    ELLIPSES,
+    INDICES,
+    MARKS,
+    OPENING,
+    RELATIONS,
+    SPACES,
+    STARS,
+    STYLES,
+    TRANSPOSED,
+    UPRIGHT,
+)
 
 _SAID = {"+": "plus", "-": "minus", "*": "star", "|": "given", "'": "prime", ":": "to", "=": "equal"}
 """Signs in an index -> their names."""
+_UNSAID = UPRIGHT | STYLES.keys() | SPACES | RELATIONS.keys() | ELLIPSES | OPENING | CLOSING | BARS | {"mid", "cdot"}
+_UNSAID |= frozenset(("{", "}", "frac", "tfrac", "dfrac", "text", "rm", "it", "sf", "%", "&", "#", "_"))
+"""Macros in an index that do not belong to its name."""
 
 
 class LetterCursor(Cursor):
@@ -202,4 +220,6 @@ class LetterCursor(Cursor):
                 said.append(" over ")
             elif token.is_sign(_SAID):
                 said.append(f" {_SAID[token.text]} ")
+            elif token.kind == "macro" and token.text not in _UNSAID and not token.text.isspace():
+                raise Unread("this index is not supported", token.at)
         return "".join(said)

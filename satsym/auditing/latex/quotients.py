@@ -8,6 +8,7 @@ from dataclasses import replace
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.places import PlaceCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
+from satsym.auditing.latex.words import ARGUMENT_OR_FACTOR
 from satsym.formula.tree import ZERO, Add, Call, Mul, Node, Sym, constant, walk
 
 
@@ -62,7 +63,7 @@ class QuotientCursor(PlaceCursor):
         if self._is("(") and self._is_place_next():
             at = self._found[self._i].at
             if not (self._is("t", 1, "letter") and self._is(")", 2)):
-                raise Unread("the argument in brackets after this letter is not supported", at)
+                raise Unread(ARGUMENT_OR_FACTOR, at)
             self._i += 3
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:

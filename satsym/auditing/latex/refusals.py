@@ -57,7 +57,8 @@ class RefusalCursor(OperatorCursor):
             raise Unread("this delta could denote a difference, or be a factor before an integral", before.at)
         if token.text in words.UPRIGHT:
             said, plain = "".join(t.text for t in self._peek_group()), token.text.startswith(("text", "mbox"))
-            if said in words.UNITS and (plain or constant(last) is not None):
+            apart = token.at > before.at + len(before.text) + (before.kind == "macro") + 1
+            if said in words.UNITS and (plain or apart or constant(last) is not None):
                 raise Unread("units in formulas are not supported", token.at)
             if plain and len(said) > 1 and said not in FUNCTIONS and said not in words.UNKNOWN:
                 raise Unread("words inside a formula are not supported", token.at)

@@ -9,7 +9,7 @@ from itertools import accumulate, pairwise
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.remarks import REMARK
-from satsym.auditing.latex.tokens import END, Token, Unread, end_of, environment, group_end
+from satsym.auditing.latex.tokens import COMMA_IN_NUMBER, END, Token, Unread, end_of, environment, group_end
 from satsym.auditing.latex.words import CLOSING, COUNTERS, ELLIPSES, OPENING, OPTIMA, RELATIONS, SYSTEMS, TIMES, UPRIGHT
 
 
@@ -250,7 +250,7 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     for before, after in pairwise(part for part in parts if part and not listed):
         digits = before[-1]
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
-            raise Unread("a comma in a number could separate thousands or decimals", after[0].at - 1)
+            raise Unread(COMMA_IN_NUMBER, after[0].at - 1)
     kept = [part for part in (_without_stop(part) for part in parts) if part]
     if not any(_has_relation(part) for part in kept):
         return kept

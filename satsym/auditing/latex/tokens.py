@@ -16,6 +16,7 @@ MAX_LENGTH = 20_000
 """Number of characters that one formula may have."""
 MAX_TOKENS = 8000
 """Number of tokens that one formula may have after its macros are replaced; this also stops recursive macros."""
+COMMA_IN_NUMBER = "this comma could separate decimals, thousands or two numbers; write 1.5, 1500 or a space behind it"
 _MAX_NESTING = 30
 """Number of levels to which macros may occur within macros."""
 
@@ -291,7 +292,7 @@ def _pieces(text: str, start: int) -> list[Token]:
                 digits = _NUMBER.match(text, comma.end())
                 assert digits is not None
                 if len(digits[0]) == 3 and value != "0" and not _POWER_OF_TEN.match(text, digits.end()):
-                    raise Unread("a comma in a number could separate thousands or decimals", start + position)
+                    raise Unread(COMMA_IN_NUMBER, start + position)
                 value, position = f"{value}.{digits[0]}", digits.end()
             found.append(Token("number", value, start + number.start()))
             continue

@@ -79,6 +79,9 @@ OPTIMA = {
     "sup": "supremum",
 }
 """Operators over a subscript, such as a minimum -> the function that represents them in trees."""
+ARGUMENT_OR_FACTOR = "this bracket could be an argument or a factor; write \\cdot before a factor"
+PRIMED = "this prime could be a transpose or a derivative; write ^\\top or \\frac{d}{dt}"
+OPERAND_ENDS = "without brackets, it is not clear where the operand of this operator ends"
 EITHER_PRODUCT = "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot"
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
 NOT_COMPARED |= frozenset(
