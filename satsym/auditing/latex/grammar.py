@@ -13,13 +13,26 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.cursor import Reading, bar_in
+from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines
-from satsym.auditing.latex.tokens import Token, Unread, braced, group_at
-from satsym.auditing.latex.words import CALLED, CONSTANT, RELATIONS, SAID, SPELLED, STYLES, UNITS, UPRIGHT
+from satsym.auditing.latex.tokens import END, Token, Unread, braced, group_at
+from satsym.auditing.latex.words import (
+    CALLED,
+    CONSTANT,
+    DECORATIONS,
+    RELATIONS,
+    SAID,
+    SIGNS,
+    SPELLED,
+    STARS,
+    STYLES,
+    UNITS,
+    UPRIGHT,
+)
 from satsym.formula.tree import ZERO, Call, Equality, Grid, Mul, Node, Pow, Sym, calls_in, cells, children, walk
 
 _READINGS = 3
@@ -33,6 +46,8 @@ _UNITS = frozenset("rad deg kg Hz rpm mol".split())
 """Units of several letters that hardly ever are products of these letters."""
 _SERIES = "xyz", "pid", "rpy"
 """Letters that number the members of a series, such as the gains of a controller."""
+_SEPARATORS = frozenset(("\\\\", "quad", "qquad", "remark"))
+"""Macros behind which a part of a formula begins."""
 _SIGNS = frozenset(("cdot", "*"))
 """Multiplication signs: an author who writes them next to adjacent letters does not mean a product of these letters."""
 
@@ -55,6 +70,7 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
         At the first part that does not belong to the grammar.
     """
     kept = with_names(without_remarks(put_in(found)), names)
+    refuse_leading_indices(kept)
     first = Reading([], lenient=True)
     with suppress(Unread):
         _read(kept, first, start)
@@ -254,6 +270,30 @@ def refuse_sums_in_capitals(part: Sequence[Token]) -> None:
         forces = k == 0 and token.text == "Sigma" and behind in ("F", "M", "tau", "vec", "T")
         if forces or any(t.text == "=" for t in below):
             raise Unread("this capital letter could be a sign of a sum or product; write \\sum or \\prod", token.at)
+
+
+def refuse_leading_indices(found: Sequence[Token]) -> None:
+    """Refuse a superscript between two letters if superscripts are printed before letters elsewhere in the formula."""
+    places = [k for k, token in enumerate(found) if token.is_sign("^_")]
+    leading = [k for k in places if _begins(found, k)]
+    leading = [k for k in leading if [t.text for t in group_at(found, k + 1)[0]] not in (["circ"], ["prime"])]
+    for k in places if leading else ():
+        inside, end = group_at(found, k + 1)
+        power = all(t.kind == "number" or t.text in ("-", "T", "top", "prime", "'", *STARS, *UPRIGHT) for t in inside)
+        behind = found[end] if end < len(found) else END
+        letter = behind.kind in ("letter", "open") or behind.is_macro(GREEK | DECORATIONS | UPRIGHT)
+        trailing = not _begins(found, k) and not (found[k].text == "_" and found[k - 1].kind == "letter")
+        if trailing and letter and (not power or found[k].text == "_"):
+            raise Unread("it is not clear to which letter this leading index belongs", found[k].at)
+
+
+def _begins(found: Sequence[Token], k: int) -> bool:
+    """Return whether the index at a position belongs to the letter after the index."""
+    token = found[k - 1] if k else Token("macro", "quad", 0)
+    if token.kind == "close" and k > 1 and found[k - 2].kind == "open":
+        return True
+    macro = token.kind == "macro" and (token.text in RELATIONS or token.text in SIGNS or token.text in _SEPARATORS)
+    return macro or token.kind == "begin" or (token.kind in ("sign", "open") and token.text in "=+-*/([,;&{")
 
 
 def _is_ratio(part: Sequence[Token], first: int, last: int) -> bool:

@@ -333,6 +333,8 @@ class Parser(SumCursor):
                 name = "".join(t.text for t in group)
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", group[0].at)
             inner = self._inner(group, token.at)
+            if isinstance(inner, Num) and self._peek(-len(group) - 4).kind == "number":
+                raise Unread("a repeating decimal is not supported; write a fraction", token.at)
             return Call("over", (inner, Sym(MARKS[name]))) if name in MARKS else self._dotted(inner, ACCENTS[name])
         if letter is None:
             self._refuse()

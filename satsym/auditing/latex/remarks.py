@@ -340,6 +340,11 @@ def _has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
     return not index and related and sum(token.text == "$" for token in inside) in (2, 4)
 
 
+def _is_sign(token: Token) -> bool:
+    """Return whether a macro is a sign of a relation or product, or separates formulas."""
+    return token.text in RELATIONS or token.text in SIGNS or token.text in CONNECTIVES or token.text in ("\\", REMARK)
+
+
 def _apart(found: Sequence[Token], i: int) -> list[Token]:
     """Return the words at a position and the formulas between them as separate parts."""
     macro, opening = found[i - 1], found[i]
@@ -366,7 +371,8 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     inside = [t for t in found[i + 1 : end - 1] if t.text not in "~$"]
     alone = depth == 1 and i > 1 and found[i - 2].text == "(" and end < len(found) and found[end].text == ")"
     before = kept[-2] if len(kept) > 1 else None
-    alone = alone and (before is None or not (before.kind in ("letter", "close") or before.text in GREEK))
+    functional = before is not None and before.kind == "macro" and before.text not in SPACES and not _is_sign(before)
+    alone = alone and (before is None or not (before.kind in ("letter", "close") or functional))
     if not inside or (depth and not alone):
         return False
     said = inside[0].text + "".join(

@@ -12,7 +12,7 @@ ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
 MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
 MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
 STYLES = dict.fromkeys(
-    "mathbf boldsymbol bm vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
+    "mathbf boldsymbol bm bold vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
 BOLD = frozenset(STYLES)
 """Macros that set vectors."""
