@@ -59,6 +59,14 @@ def may_be_argument(letter: Letter, inside: Sequence[Token], raised: bool) -> bo
     )
 
 
+def is_varied(inside: Sequence[Token]) -> bool:
+    """Return whether a bracket holds a place near another one, such as x + h, or another time, such as t - T."""
+    terms = [part for part in split(inside, lambda t: t.is_sign("+-")) if part]
+    heads = [_head(term) for term in terms]
+    unknown = Letter("x")
+    return len(terms) > 1 and (_may_be_in_time(unknown, terms, heads) or _may_be_varied(unknown, terms, heads))
+
+
 def _may_be_single(letter: Letter, inside: Sequence[Token], term: Sequence[Token], plain: bool, raised: bool) -> bool:
     """Return whether a bracket with one term, such as -x, 2x or x/2, could be an argument."""
     if raised:

@@ -275,14 +275,20 @@ def refuse_sums_in_capitals(part: Sequence[Token]) -> None:
 def refuse_leading_indices(found: Sequence[Token]) -> None:
     """Refuse a superscript between two letters if superscripts are printed before letters elsewhere in the formula."""
     places = [k for k, token in enumerate(found) if token.is_sign("^_")]
-    leading = [k for k in places if _begins(found, k)]
-    leading = [k for k in leading if [t.text for t in group_at(found, k + 1)[0]] not in (["circ"], ["prime"])]
+    leading: dict[int, int] = {}
+    for k in places:
+        inside, end = group_at(found, k + 1)
+        if (_begins(found, k) or k in leading.values()) and [t.text for t in inside] not in (["circ"], ["prime"]):
+            leading[k] = end  # where another leading index may follow
     for k in places if leading else ():
         inside, end = group_at(found, k + 1)
         power = all(t.kind == "number" or t.text in ("-", "T", "top", "prime", "'", *STARS, *UPRIGHT) for t in inside)
         behind = found[end] if end < len(found) else END
+        empty = behind.kind == "open" and found[end + 1].kind == "close"
         letter = behind.kind in ("letter", "open") or behind.is_macro(GREEK | DECORATIONS | UPRIGHT)
-        trailing = not _begins(found, k) and not (found[k].text == "_" and found[k - 1].kind == "letter")
+        apart = found[k].at > found[k - 1].at + len(found[k - 1].text) + (found[k - 1].kind == "macro")
+        trailing = not _begins(found, k) and k not in leading and not empty
+        trailing &= found[k].text == "^" or apart or found[k - 1].text == ")"
         if trailing and letter and (not power or found[k].text == "_"):
             raise Unread("it is not clear to which letter this leading index belongs", found[k].at)
 

@@ -66,6 +66,8 @@ class Parser(SumCursor):
                 order = text == "10" and self._is("^", 1)
                 if token.kind == last.kind == "number" and isinstance(chain[-1], Num) and not order:
                     raise Unread("two numbers stand side by side", token.at)
+                if token.is_sign("(") and constant(chain[-1]) is None and self._encloses_one():
+                    raise Unread(words.ARGUMENT_OR_FACTOR, token.at)
                 group = self._found[self._i + 1 : self._i + 3] if token.kind == "open" else [token]
                 worn = last.kind == "letter" or last.text in GREEK
                 beside = token.at <= last.at + len(last.text) + (last.kind == "macro")
@@ -79,6 +81,22 @@ class Parser(SumCursor):
             else:
                 break
         return product_of(chain)
+
+    def _encloses_one(self) -> bool:
+        """Return whether the next bracket holds one letter, value or function and has no power.
+
+        Nobody writes brackets around a single factor, so that it is the argument of what stands in front of it.
+        """
+        begin = self._i
+        inside = self._found[begin + 1 : self._bracket_end(interval=True)]
+        raised, self._i = self._is("^"), begin
+        if raised or not inside or any(t.is_sign(",;") or t.kind == "begin" for t in inside):
+            return False
+        tree = self._inner(inside, self._found[begin].at)
+        if isinstance(tree, Sym):
+            letter = self._reading.letters.get(tree.name)
+            return letter is not None and not letter.dots
+        return isinstance(tree, Call) and (tree.function == "value" or tree.function in _CALLED)
 
     def _times(self, sign: Token, chain: list[Node], crossed: str) -> str:
         """Read the right operand of a multiplication sign into a product, and return the last vector product."""
@@ -354,6 +372,8 @@ class Parser(SumCursor):
         return self._symbol(letter, token.at)
 
 
+_CALLED = frozenset(FUNCTIONS.values()) - {"sqrt", "abs", "det", "d", "diff"}
+"""Functions of which one alone in brackets is an argument."""
 _FACTORS = frozenset(GREEK).union(
     *(FUNCTIONS, words.RECIPROCALS, ACCENTS, MARKS, words.STYLES, words.UPRIGHT, KEPT_GROUPS, ATOMS, words.BARS)
 )

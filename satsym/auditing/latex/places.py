@@ -19,6 +19,7 @@ from satsym.auditing.latex.words import (
     COUNTERS,
     DOUBLE_SIGNS,
     FIELDS,
+    FUNCTIONS,
     LAPSED,
     PRIMED,
     SHIFTED,
@@ -147,6 +148,9 @@ class PlaceCursor(LetterCursor):
         )
         matrices = base and base.bold and factor
         crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
+        inverse = self._is("^") and [t.text for t in self._peek_group()] == ["-", "1"]
+        if inverse and base and base.base.isupper() and letter.base.isupper() and not letter.bold:
+            raise Unread(ARGUMENT_OR_FACTOR, bracket.inside[0].at - 1)
         return crossed or bool(matrices and len(bracket.places) == 1 and self._is("^"))
 
     def _is_surely_taken(self, letter: Letter, bracket: _Bracket) -> bool:
@@ -172,6 +176,7 @@ class PlaceCursor(LetterCursor):
         """Return whether the bracket behind a letter could contain an argument, though it reads as a factor."""
         angles = all(t.text in GREEK or t.text in "+-_" or t.kind in ("open", "close", "number") for t in inside)
         turned = letter.base.isupper() and inside[0].text == "-" and inside[1].text in GREEK
+        turned &= not any(t.is_macro(FUNCTIONS) for t in inside)
         turned |= letter.base == "R" and angles and inside[0].text in GREEK
         taken = self._is_product(inside) and not self._is_factor(letter, inside)
         taken &= not (_is_scalar(letter) and self._is("^") and letter not in map(Letter, ARGUED))
@@ -221,9 +226,12 @@ class PlaceCursor(LetterCursor):
         turned = isinstance(base, Call) and base.function == "transpose" and base.arguments[0]
         if isinstance(turned, Sym):  # R^T(x) is R(x)^T
             self._i = begin
-            summed = len(split(inside, lambda t: t.is_sign("+-"))) > 1 and not {"t", "k"} & {t.text for t in inside}
-            if summed and not self._reading.letters[turned.name].base.isupper():  # of a vector, a factor follows
-                return base
+            terms = split(inside, lambda t: t.is_sign("+-"))
+            timed = any([t.text for t in term] in (["t"], ["k"], ["tau"]) for term in terms)
+            matrix = self._reading.letters[turned.name].base.isupper()
+            capitals = any(t.kind == "letter" and t.text.isupper() for t in inside)
+            if not timed and (capitals and self._is_raised() if matrix else len(terms) > 1):
+                return base  # since a factor follows
             taken = self._taken_at(self._reading.letters[turned.name])
             return Call("transpose", (Call("value", (turned, *taken)),)) if taken else base
         places = split(inside, lambda token: token.text == ",")
@@ -243,6 +251,13 @@ class PlaceCursor(LetterCursor):
             raise Unread(ARGUMENT_OR_FACTOR, self._found[begin].at)
         self._i = begin
         return base
+
+    def _is_raised(self) -> bool:
+        """Return whether a power follows the next bracket."""
+        begin = self._i
+        self._bracket_end()
+        raised, self._i = self._is("^"), begin
+        return raised
 
     def _squared(self, power: Pow) -> Letter | None:
         """Return the letter of a power.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from satsym.auditing.latex.arguments import is_varied
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.places import PlaceCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
@@ -60,11 +61,18 @@ class QuotientCursor(PlaceCursor):
 
         Another letter in brackets could be an argument or a factor, and is refused.
         """
-        if self._is("(") and self._is_place_next():
+        if self._is("(") and (self._is_place_next() or self._is_varied_next()):
             at = self._found[self._i].at
             if not (self._is("t", 1, "letter") and self._is(")", 2)):
                 raise Unread(ARGUMENT_OR_FACTOR, at)
             self._i += 3
+
+    def _is_varied_next(self) -> bool:
+        """Return whether the next bracket holds a value, or a place near another one, as in x + h."""
+        begin = self._i
+        inside = self._found[begin + 1 : self._bracket_end()]
+        self._i = begin
+        return bool(inside) and (self._is_taken(inside) or is_varied(inside))
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
         """Read a quotient of differentials with a slash, as numerator and denominator; otherwise ``None``."""
