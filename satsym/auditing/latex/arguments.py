@@ -59,6 +59,15 @@ def may_be_argument(letter: Letter, inside: Sequence[Token], raised: bool) -> bo
     )
 
 
+def is_single(inside: Sequence[Token]) -> bool:
+    """Return whether a bracket holds one term, which is neither a number nor a quotient nor a function."""
+    if len(split(inside, lambda t: t.is_sign("+-,;"))) > 1 or any(t.kind == "begin" for t in inside):
+        return False
+    return (
+        bool(inside) and inside[0].kind != "number" and inside[0].text not in _WORKED | {"-", "dot", "ddot", "partial"}
+    )
+
+
 def is_varied(inside: Sequence[Token]) -> bool:
     """Return whether a bracket holds a place near another one, such as x + h, or another time, such as t - T."""
     terms = [part for part in split(inside, lambda t: t.is_sign("+-")) if part]

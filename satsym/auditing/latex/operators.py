@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from satsym.auditing.latex import words
@@ -74,13 +75,13 @@ class OperatorCursor(QuotientCursor):
             if self._peek().text in ("+", "-"):
                 raise Unread(words.OPERAND_ENDS, self._here)
             return Call("limit", (operand, *ends))
-        over = self._condition(below, token.at)
+        over = listed(self._condition(below, token.at)) if below else ()
         sign = self._here
         operand = self._sum()
         optima = [call for call in calls_in(operand) if call.function in OPTIMA.values()]
         if isinstance(operand, Add) and (begun or optima):
             raise Unread(words.OPERAND_ENDS, sign)
-        return Call(OPTIMA[token.text], (operand, *listed(over)))
+        return Call(OPTIMA[token.text], (operand, *over))
 
     def _limits(self) -> dict[str, list[Token]]:
         limits: dict[str, list[Token]] = {}
@@ -131,6 +132,8 @@ class OperatorCursor(QuotientCursor):
             raise Unread(f"indices of {name} are not supported", self._take().at)
         if self._is("(") or self._is("["):
             arguments = self._arguments()
+        elif name in OPTIMA and power is None and not self._is("{", kind="macro"):
+            return self._optimum(replace(token, text=name))
         elif self._is("{", kind="open") or self._peek() is END:
             arguments = [self._inner(self._group(), token.at)]
         elif self._is("{", kind="macro"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from satsym.auditing.latex.arguments import is_varied
+from satsym.auditing.latex.arguments import is_single, is_varied
 from satsym.auditing.latex.letters import Letter, cleaned, is_name
 from satsym.auditing.latex.places import PlaceCursor
 from satsym.auditing.latex.tokens import Token, Unread, group_end
@@ -68,11 +68,11 @@ class QuotientCursor(PlaceCursor):
             self._i += 3
 
     def _is_varied_next(self) -> bool:
-        """Return whether the next bracket holds a value, or a place near another one, as in x + h."""
+        """Return whether the next bracket holds one term, or a place near another one, as in x + h."""
         begin = self._i
         inside = self._found[begin + 1 : self._bracket_end()]
         self._i = begin
-        return bool(inside) and (self._is_taken(inside) or is_varied(inside))
+        return bool(inside) and (is_single(inside) or is_varied(inside))
 
     def _slashed(self) -> tuple[list[Token], list[Token]] | None:
         """Read a quotient of differentials with a slash, as numerator and denominator; otherwise ``None``."""
