@@ -6,7 +6,9 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 
-from satsym.auditing.latex.letters import GREEK
+from satsym.auditing.latex.arguments import may_be_argument
+from satsym.auditing.latex.letters import GREEK, of_word
+from satsym.auditing.latex.tokens import tokens
 from satsym.auditing.latex.words import BETWEEN, COUNTERS, DOUBLE_SIGNS, OF_SETS, OPTIMA, RELATIONS
 from satsym.formula.tree import (
     Add,
@@ -92,6 +94,7 @@ _FORMS = {
     name: (form, binding) for binding, forms in enumerate((_SUMS, _PRODUCTS, _ATOMS)) for name, form in forms.items()
 }
 """Function -> how it is written, and its precedence; an argument may be put in brackets as an atom or a product."""
+_OPENING, _CLOSING = r"\left(", r"\right)"
 _GAP = re.compile("<(?:(all|others)|([123])(?::(atom|product))?)>")
 _KNOWN = frozenset("sin cos tan sinh cosh tanh min max det".split())
 _GREEK = "|".join(sorted(GREEK))
@@ -100,6 +103,16 @@ _RUNS_ON = re.compile(
     rf"(?:[A-Za-z][^ |]*\|(?:[A-Za-z]|\\(?:{_GREEK})\b)|\\[^ |]+\|\\(?:{_GREEK})\b)"
 )
 """Pattern of a function of a letter without brackets before another letter."""
+
+
+def _may_take(before: Node, bracket: str) -> bool:
+    """Return whether a bracket behind a factor would be read as its argument, or refused, without a sign between."""
+    base = before.base if isinstance(before, Pow) else before
+    if not isinstance(base, Sym) or "_vector" in base.name:
+        return isinstance(base, Call) and base.function in ("diff", "value") and bracket.endswith(_CLOSING)
+    if not bracket.endswith(_CLOSING):  # since a power follows
+        return False
+    return may_be_argument(of_word(base.name), tokens(bracket[len(_OPENING) : -len(_CLOSING)]), False)
 
 
 def in_latex(letters: Mapping[str, str]) -> Writer:
@@ -165,7 +178,11 @@ class _Tex:
         for k, (before, piece) in enumerate(pairwise(pieces)):
             if _RUNS_ON.search(f"{before}|{piece} "):  # sin x y would be read as sin(xy)
                 pieces[k] = rf"\left({before}\right)"
-        return pieces[0] + "".join(rf" \cdot {piece}" if piece[:1].isdigit() else f" {piece}" for piece in pieces[1:])
+        said = pieces[0]
+        for factor, piece in zip(node.factors, pieces[1:], strict=False):
+            signed = piece[:1].isdigit() or (piece.startswith(_OPENING) and _may_take(factor, piece))
+            said += rf" \cdot {piece}" if signed else f" {piece}"
+        return said
 
     def _power(self, node: Pow) -> str:
         (text, binding), exponent = self.of(node.base), self._whole(node.exponent)
