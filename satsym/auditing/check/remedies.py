@@ -8,9 +8,6 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from satsym.auditing.comparison.bench import Bench
-from satsym.auditing.comparison.compare import plans
-from satsym.auditing.diagnosis.smallest_edit import Remedy, first_remedy, wrong_formula
 from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.schema import DocumentTable, RowTable
 from satsym.auditing.ledger.scopes import Scope
@@ -24,7 +21,9 @@ from satsym.status import BadInput
 if TYPE_CHECKING:
     from satsym.auditing.check.answer import Subject
     from satsym.auditing.check.answers import Fit
+    from satsym.auditing.comparison.bench import Bench
     from satsym.auditing.comparison.plan import Plan
+    from satsym.auditing.diagnosis.smallest_edit import Remedy
 
 NO_EDIT = 60.0
 """Cost of an equation for which no edit was found; for comparison, a single edit costs at most about 20."""
@@ -75,6 +74,9 @@ def sought(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, su
 
 def _sought(bench: Bench, row: Row, derivatives: Mapping[str, Node], subject: Subject) -> Found:
     assert row.printed is not None
+    from satsym.auditing.comparison.compare import plans
+    from satsym.auditing.diagnosis.smallest_edit import first_remedy, wrong_formula
+
     ways = plans(bench, row, row.printed, bench.target(row))
     if any(way.is_right(way.printed) for way in ways):
         return Found(True, "", None, 0.0)
@@ -116,6 +118,8 @@ def _correct(bench: Bench, row: Row, compared: Plan, fix: Remedy | None) -> Node
 
 def _bench(named: Node | Equality, derivatives: Mapping[str, Node], fit: Fit, subject: Subject) -> tuple[Bench, Row]:
     """Return a ledger whose only row is the statement, with the tools to judge it, and the row."""
+    from satsym.auditing.comparison.bench import Bench
+
     derived = subject.derived
     assert fit.target is not None
     known = subject.meant(named, derivatives, fit.guess)
