@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from satsym.auditing.latex.words import (
     OPENING,
     REFUSED,
     RELATIONS,
+    UNITS,
     UPRIGHT,
 )
 from satsym.formula.tree import Call, Equality, Grid, Node, Pow, Sym, symbols, walk
@@ -261,6 +263,13 @@ class Cursor(ABC):
 def listed(node: Node) -> tuple[Node, ...]:
     """Return the members of a list; of anything else, itself alone."""
     return node.arguments if isinstance(node, Call) and node.function == "list" else (node,)
+
+
+def are_units(part: Sequence[Token]) -> bool:
+    """Return whether tokens spell only units, such as m/s or kg."""
+    said = "".join(t.text for t in part if t.kind not in ("open", "close")).replace("cdot", " ")
+    names = [name for name in re.split(r"[^A-Za-z]+", said) if name]
+    return bool(names) and all(name in UNITS for name in names)
 
 
 def bar_in(part: Sequence[Token], colon: bool = False) -> int:

@@ -12,14 +12,14 @@ from contextlib import suppress
 from itertools import pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import Reading, bar_in
+from satsym.auditing.latex.cursor import Reading, are_units, bar_in
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
 from satsym.auditing.latex.remarks import without_remarks
-from satsym.auditing.latex.rows import lines
-from satsym.auditing.latex.tokens import END, Token, Unread, braced, group_at
+from satsym.auditing.latex.rows import lines, split
+from satsym.auditing.latex.tokens import END, Token, Unread, braced, end_of, group_at
 from satsym.auditing.latex.words import (
     CALLED,
     CONSTANT,
@@ -88,8 +88,11 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
 
 
 def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
-    for line in lines(kept):
+    found = lines(kept)
+    for k, line in enumerate(found):
         refuse_spelled_name(line.sides)
+        if k and line.bare and not found[k - 1].bare and are_units(line.sides[0]):
+            raise Unread("this could be a unit or a factor; set units upright", line.sides[0][0].at)
         colon = bar_in(line.sides[0], colon=True) if line.signs == ["tends"] else -1
         if colon > 0 and line.sides[0][colon].text == ":":  # a function between two sets
             parts = [line.sides[0][:colon], line.sides[0][colon + 1 :], line.sides[1]]
@@ -207,6 +210,7 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             doubtful |= name in _GROUPS and beside <= {"(", ")", ","}
             doubtful |= _is_spelled(part, first, last) or _is_in_series(line, name)
             if name.isupper():
+                doubtful |= name != "GM" and _holds_one_term(part, last)
                 doubtful |= len(name) == len(part) and (len(name) > 2 or len(line) > 2)
                 doubtful |= [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
                 doubtful |= name != "GM" and not beside.isdisjoint(_SIGNS)
@@ -228,6 +232,14 @@ def _is_spelled(part: Sequence[Token], first: int, last: int) -> bool:
     inner = letters[1:] if letters[0].isupper() else letters
     worded = len(letters) > 2 and all(map(str.islower, inner)) and any(letter in "aeiou" for letter in inner)
     return worded and "d" not in letters[::2] and len(set(letters)) == len(letters)
+
+
+def _holds_one_term(part: Sequence[Token], k: int) -> bool:
+    """Return whether a bracket with one term begins at a position, as behind the name of a function."""
+    if k >= len(part) or not part[k].is_sign("("):
+        return False
+    inside = part[k + 1 : end_of(part, k, lambda token: token.is_sign("(") - token.is_sign(")")) - 1]
+    return bool(inside) and len(split(inside, lambda token: token.is_sign("+-"))) < 2
 
 
 def _is_labelled(part: Sequence[Token], k: int) -> bool:

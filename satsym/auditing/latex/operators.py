@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import MIXED_BRACKETS, listed
+from satsym.auditing.latex.cursor import MIXED_BRACKETS, are_units, listed
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.quotients import QuotientCursor
 from satsym.auditing.latex.rows import relation_in, split
@@ -224,11 +223,9 @@ class OperatorCursor(QuotientCursor):
 
     def _are_units(self, begin: int) -> bool:
         """Return whether the bracket that was read contains only units, such as m/s or kg."""
-        said = "".join(t.text for t in self._found[begin + 1 : self._i - 1] if t.kind not in ("open", "close"))
-        parts = re.split(r"[^A-Za-z]+", said.replace("cdot", " "))
         before = self._at(begin - 1)
         apart = before.kind == "number" or self._found[begin].at > before.at + len(before.text) + 1
-        return apart and before.text != "]" and all(part in words.UNITS for part in parts if part) and any(parts)
+        return apart and before.text != "]" and are_units(self._found[begin + 1 : self._i - 1])
 
     def _stands_behind_a_letter(self, begin: int) -> bool:
         """Return whether a bracket with one letter or function follows a letter, as in an expectation."""
@@ -349,6 +346,8 @@ def shows_transposition(terms: Sequence[Node]) -> bool:
         term = term.operand if isinstance(term, Neg) else term
         factors = term.factors if isinstance(term, Mul) else ()
         names = [part.name if isinstance(part, Sym) else "" for part in factors]
+        if len(names) > 2 and names[0][:1].isupper() and names[-1] == f"{names[0]}_prime":
+            return True  # as A P A'
         for k, name in enumerate(names[:-1]):
             if name.endswith("_prime") and names[k + 1][:1].isupper() and name.removesuffix("_prime") in names[k + 2 :]:
                 return True

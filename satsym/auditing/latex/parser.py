@@ -231,9 +231,11 @@ class Parser(SumCursor):
                 else:
                     base = Call("indexed", (base, self._indices_of(script, at)))
             elif self._is("'") and not self._is("'", 1) and self._has_matrix(base):
-                if not (self._reading.transposing or self._is_vector(base) or self._begins_factor(self._peek(1))):
+                sure = self._is_vector(base) or self._begins_factor(self._peek(1)) or self._reading.transposing
+                if not sure and not self._reading.lenient:
                     raise Unread(words.PRIMED, self._here)
-                self._reading.transposing = self._accept("'")
+                self._reading.transposing |= sure
+                self._i += 1
                 base = Call("transpose", (base,))
             elif self._is("'") and not isinstance(base, Num):
                 raise Unread("a prime is not allowed here", self._take().at)

@@ -36,12 +36,21 @@ class SumCursor(EnclosedCursor):
             if summed & self._free(term):
                 raise Unread("without brackets, it is not clear where the sum ends", at)
             summed |= _summed_over(term)
+            if isinstance(term, Mul) and not (self._reading.transposing or self._reading.lenient):
+                self._refuse_primed(term, at)
             term = Call(double, (term,)) if double else term
             terms.append(Neg(term) if negative else term)
             if not self._additive():
                 break
         self._reading.transposing |= shows_transposition(terms)
         return terms[0] if len(terms) == 1 else Add(tuple(terms))
+
+    def _refuse_primed(self, product: Mul, at: int) -> None:
+        """Refuse a product that ends with a matrix with a prime, which could be its transpose or its derivative."""
+        letter = self._letter_of(product.factors[-1])
+        matrix = letter is not None and (letter.bold or letter.base.isupper()) and not letter.dots
+        if matrix and letter is not None and letter.marks == ("prime",):
+            raise Unread(words.PRIMED, at)
 
     def _sum_over(self, token: Token) -> Node:
         """Read a sum or product over an index: the term, the index, and the limits as far as they are printed."""
