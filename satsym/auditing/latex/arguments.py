@@ -35,6 +35,8 @@ _WORKED = frozenset(("frac", "dfrac", "tfrac", "sqrt", *(FUNCTIONS.keys() - {"d"
 """Macros of quotients, roots and functions."""
 _OF_VECTORS = frozenset("Omega Xi Lambda Theta Sigma Pi Upsilon".split())
 """Letters of matrices that depend on a vector."""
+_SCALARS = frozenset("a b c d e k l m n q r s v".split())
+"""Letters that are seldom functions of anything but the time."""
 _TURNS = frozenset("c s C S R".split())
 """Letters of abbreviated sines and cosines, and of rotations."""
 
@@ -59,6 +61,11 @@ def may_be_argument(letter: Letter, inside: Sequence[Token], raised: bool) -> bo
     )
 
 
+def may_be_squared(letter: Letter, argument: Letter) -> bool:
+    """Return whether a single letter in brackets with a power behind them could be a factor, as in m (v)^2."""
+    return bool(argument.before) or letter.base in _SCALARS
+
+
 def is_single(inside: Sequence[Token]) -> bool:
     """Return whether a bracket holds one term, which is neither a number nor a quotient nor a function."""
     if len(split(inside, lambda t: t.is_sign("+-,;"))) > 1 or any(t.kind == "begin" for t in inside):
@@ -80,6 +87,8 @@ def _may_be_single(letter: Letter, inside: Sequence[Token], term: Sequence[Token
     """Return whether a bracket with one term, such as -x, 2x or x/2, could be an argument."""
     if raised:
         return False
+    if term[0].is_sign("(") and len(term) > 2 and not term[-1].is_sign(")"):
+        return True
     counted = term[0].kind == "number" and len(term) > 1 and (term[1].kind == "letter" or term[1].text in GREEK)
     negative = inside[0].is_sign("-") and _head(term) in _VARIABLES | _TIMES and len(term) == 1
     divided = any(t.text in ("/", "frac", "dfrac", "tfrac") for t in term)

@@ -239,7 +239,8 @@ def _holds_one_term(part: Sequence[Token], k: int) -> bool:
     if k >= len(part) or not part[k].is_sign("("):
         return False
     inside = part[k + 1 : end_of(part, k, lambda token: token.is_sign("(") - token.is_sign(")")) - 1]
-    return bool(inside) and len(split(inside, lambda token: token.is_sign("+-"))) < 2
+    timed = len(inside) == 1 and inside[0].text in ("t", "s", "k", "z", "tau")
+    return bool(inside) and not timed and len(split(inside, lambda token: token.is_sign("+-"))) < 2
 
 
 def _is_labelled(part: Sequence[Token], k: int) -> bool:

@@ -352,6 +352,9 @@ class Parser(SumCursor):
             if len(group) > 1 and all(t.kind == "letter" and t.text.isupper() for t in group):
                 name = "".join(t.text for t in group)
                 raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", group[0].at)
+            if name in ACCENTS and len(group) > 1 and all(t.kind == "letter" for t in group):
+                name = "".join(t.text for t in group)
+                raise Unread(f"{name} could be one name, \\mathrm{{{name}}}, or a product", group[0].at)
             inner = self._inner(group, token.at)
             if isinstance(inner, Num) and self._peek(-len(group) - 4).kind == "number":
                 raise Unread("a repeating decimal is not supported; write a fraction", token.at)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from satsym.auditing.latex.arguments import may_be_argument
+from satsym.auditing.latex.arguments import may_be_argument, may_be_squared
 from satsym.auditing.latex.cursor import bar_in, listed
 from satsym.auditing.latex.letters import GREEK, Letter, is_name
 from satsym.auditing.latex.printed import LetterCursor
@@ -118,6 +118,10 @@ class PlaceCursor(LetterCursor):
         if self._is_before_power(letter, bracket):
             self._i = begin
             return ()
+        step = bracket.letters[0] if len(bracket.places) == 1 else None
+        small = letter.base.islower() and not letter.before and letter.base not in LAPSED | ARGUED | SHIFTED
+        if step and step.before and small:
+            self._refuse_argument(self._found[begin].at)
         if not self._is_surely_taken(letter, bracket) and not self._is_shift(letter, inside):
             doubtful = self._may_be_taken(letter, inside) or letter.style == "cal"
             if doubtful or may_be_argument(letter, inside, self._is("^")):
@@ -149,6 +153,11 @@ class PlaceCursor(LetterCursor):
         matrices = base and base.bold and factor
         crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
         inverse = self._is("^") and [t.text for t in self._peek_group()] == ["-", "1"]
+        squared = self._is("^") and all(t.kind == "number" for t in self._peek_group()) and len(bracket.places) == 1
+        if squared and base and letter.name not in self._reading.known and may_be_squared(letter, base):
+            if base.before:
+                return True
+            raise Unread(ARGUMENT_OR_FACTOR, bracket.inside[0].at - 1)
         if inverse and base and base.base.isupper() and letter.base.isupper() and not letter.bold:
             raise Unread(ARGUMENT_OR_FACTOR, bracket.inside[0].at - 1)
         return crossed or bool(matrices and len(bracket.places) == 1 and self._is("^"))

@@ -48,7 +48,7 @@ class SumCursor(EnclosedCursor):
     def _refuse_primed(self, product: Mul, at: int) -> None:
         """Refuse a product that ends with a matrix with a prime, which could be its transpose or its derivative."""
         letter = self._letter_of(product.factors[-1])
-        matrix = letter is not None and (letter.bold or letter.base.isupper()) and not letter.dots
+        matrix = letter is not None and letter.base.isupper() and not letter.dots
         if matrix and letter is not None and letter.marks == ("prime",):
             raise Unread(words.PRIMED, at)
 
