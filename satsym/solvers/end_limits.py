@@ -19,6 +19,7 @@ from satsym.solvers import iteration
 from satsym.solvers.certificate.end_limits import others_asked
 from satsym.solvers.constrained.refusals import refuse
 from satsym.solvers.search import coarse
+from satsym.solvers.search.reading.collocated import guessing
 from satsym.solvers.search.reading.limits import guessed_end, limits_met
 from satsym.solvers.search.solving import searched
 from satsym.status import BadInput, Status
@@ -73,16 +74,30 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
     for _ in range(ROUNDS):
         if found is None:
             break
-        solution = trials.by(last, found.instance.met, instance.work)
-        met = others_asked(solution) if solution.status.answered else None
+        solution, met = _solved_by(last, found, trials)
         if met is None:
             found = solution
             break
         found = trials.following(met)  # what the certificate prefers leaves its ranges, or is held by none
     if found is None:
         found = trials.unanswered()
-    own = replace(found.instance, solver=instance.solver, work=instance.work, tf_guess=instance.tf_guess)
+    own = replace(
+        found.instance, solver=instance.solver, work=instance.work, tf_guess=instance.tf_guess, guess=instance.guess
+    )
     return replace(found, instance=own, message=_message(found), wall_s=time.perf_counter() - began)
+
+
+def _solved_by(solver: Solver, found: Solution, trials: Trials) -> tuple[Solution, Met | None]:
+    """Return the solution with the active limits of a known one, and other active limits if these are wrong.
+
+    If the solver comes to another solution, which these limits do not suit, it begins again with the known one.
+    """
+    for near in (None, found):
+        solution = trials.by(solver, found.instance.met, trials.instance.work, near)
+        met = others_asked(solution) if solution.status.answered else None
+        if solution.status.answered and met is None:
+            break
+    return solution, met
 
 
 @dataclass(eq=False)
@@ -115,14 +130,22 @@ class Trials:
                 return solution
         return None
 
-    def by(self, solver: Solver, met: Met, work: float) -> Solution:
-        """Return the solution with given active limits; no answer if time is up or the end is refused."""
+    def by(self, solver: Solver, met: Met, work: float, near: Solution | None = None) -> Solution:
+        """Return the solution with given active limits; no answer if time is up or the end is refused.
+
+        Parameters
+        ----------
+        near
+            Solution that is the initial guess.
+        """
         begun = iteration.hurried(self.instance, self.deadline)
         nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if begun is None:
             self.late = True
             late = "the time limit was reached before all combinations of active limits were tried"
             return replace(nothing, message=late)
+        if near is not None:
+            begun = guessing(begun, near.times, near.x, near.lam)
         try:
             found = solver(replace(begun.meeting(met), work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.optimize import minimize
-from sympy import Rational
+from sympy import Rational, sin
 
 import satsym
 from satsym.cli.saving import save, trajectory_files
@@ -395,3 +395,30 @@ def test_a_satellite_returns_to_the_end_of_its_window_that_the_linear_motion_say
     assert found.certificate.verdict is Verdict.CERTIFIED
     assert found.x(case.tf)[2] == pytest.approx(lower, abs=1e-12)
     assert found.objective == pytest.approx(effort(lower), rel=1e-3)
+
+
+def test_a_minimum_within_a_range_is_kept_where_a_cheaper_one_lies_outside() -> None:
+    """A pendulum is swung up; where its end is free, it comes to rest below instead, outside of the range."""
+    swung = FirstOrder(
+        name="swung",
+        title="x'' = u - sin x",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x: v, v: u - sin(x)},
+    )
+    up = Problem(name="swing_up", title="swing up", model=swung, running_cost=u**2 / 2)
+
+    def solved(**final: Any) -> satsym.Solution:
+        return satsym.solve(satsym.Instance.of(up, initial={"x": 0.0, "v": 0.4126}, final=final, tf=5.2301))
+
+    found = solved(x=[2.5, 3.8], v=0.0)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    end = float(found.x["x"][-1])
+    assert 2.5 < end < 3.8
+    assert not found.found.instance.guess
+    least, *others = (solved(x=end + moved, v=0.0).objective for moved in (0.0, -0.1, 0.1))
+    assert found.objective == pytest.approx(least, rel=1e-9)
+    assert min(others) > least
+    assert solved(v=0.0).objective < 0.1 * least

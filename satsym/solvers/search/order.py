@@ -36,7 +36,7 @@ FAILING, ANY_DURATION, CONVEX, DOUBTFUL = 8, 12, 2, 3
 ANY_DURATION where the duration is free, and CONVEX where the problem is convex, because all starts lead to one motion
 then. After DOUBTFUL of them the search asks whether any motion reaches the end."""
 
-QUIET, FURTHER, PATIENCE = 4, 6, 24
+QUIET, FURTHER, PATIENCE = 4, 12, 24
 """The list of competitors ends after QUIET of them that are not cheaper than the answer, and FURTHER more for each
 further cost that they lead to, but after PATIENCE at most. Those that are not solved count half. Where ends are drawn,
 or path constraints separate the ways, it ends after PATIENCE, solved or not."""
