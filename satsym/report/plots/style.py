@@ -276,15 +276,7 @@ def titled(title: str, width: float, height: float) -> Figure:
 
 
 def hatch(axes: Axes, across: Array, up: Array, field: Array) -> None:
-    """Hatch where a field is positive, with its edge.
-
-    Parameters
-    ----------
-    across, up
-        Places, of a shape that contours take.
-    field
-        At these places; where it is no number nothing is drawn.
-    """
+    """Hatch where a field at given places is positive, with its edge; where it is not a number nothing is drawn."""
     import numpy as np
 
     if not (np.nan_to_num(field) > 0.0).any():
