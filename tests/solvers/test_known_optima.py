@@ -180,5 +180,5 @@ def test_every_entry_is_shipped_and_on_the_page():
     page = (Path(__file__).parents[2] / "docs" / "optima.md").read_text(encoding="utf-8")
     for name, entry in KNOWN.items():
         assert name in instance.shipped()
-        assert f"| {name} | {entry['source']} |" in page
+        assert f"| [{name}](gallery/{name}.md) | {entry['source']} |" in page
         assert ("reason" in entry) == (entry["verdict"] != "certified")
