@@ -96,6 +96,8 @@ def _solved_by(solver: Solver, found: Solution, trials: Trials) -> tuple[Solutio
         solution = trials.by(solver, found.instance.met, trials.instance.work, near)
         met = others_asked(solution) if solution.status.answered else None
         if solution.status.answered and met is None:
+            if near is not None:  # the guess was not the user's
+                solution = replace(solution, message=near.message)
             break
     return solution, met
 

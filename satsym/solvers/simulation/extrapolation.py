@@ -150,7 +150,8 @@ def integrate_each(
         factor = SAFETY * np.maximum(error, 1e-10) ** (-1.0 / (2 * column + 1))
         grown = h * np.clip(factor, SMALLEST_CHANGE, LARGEST_CHANGE)
         steps[own] = np.where(last & taken, left, grown)
-        if (np.abs(grown) < 1e-14 * np.maximum(np.abs(at[own]), np.abs(ends - begins)[own])).any():
+        vanishing = np.abs(grown) < 1e-14 * np.maximum(np.abs(at[own]), np.abs(ends - begins)[own])
+        if (vanishing & ~(last & taken)).any():
             break
     raise NotFinite("a motion is not finite")
 

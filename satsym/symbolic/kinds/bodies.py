@@ -5,22 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
-from sympy.physics.mechanics import ReferenceFrame, RigidBody, Vector, dynamicsymbols
 
 from satsym.spec import ModeGroup, Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.model import Model, symbols_of
 
-CLOCK = dynamicsymbols._t
+if TYPE_CHECKING:  # takes as long to import as most models take to be looked up
+    from sympy.physics.mechanics import ReferenceFrame, RigidBody, Vector
+
+CLOCK = sp.Symbol("t")
 """The symbol of time in frames of sympy.physics.mechanics."""
 
 
 def moving(variables: Iterable[Variable | sp.Symbol]) -> tuple[sp.Expr, ...]:
     """Return variables as functions of time, in the form that sympy.physics.mechanics uses."""
-    return tuple(dynamicsymbols(v.name if isinstance(v, sp.Symbol) else v.symbol) for v in variables)
+    return tuple(sp.Function(v.name if isinstance(v, sp.Symbol) else v.symbol)(CLOCK) for v in variables)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,8 +91,8 @@ class Bodies(Model):
     def _static(self) -> tuple[dict[sp.Basic, sp.Basic], dict[sp.Basic, sp.Basic]]:
         """Map functions of time, and their rates, to the model's symbols."""
         symbols = (*symbols_of(self.states), *self.named)
-        known = {dynamicsymbols(s.name): s for s in symbols} | {CLOCK: n.TIME}
-        return known, {dynamicsymbols(s.name).diff(CLOCK): n.rate_of(s) for s in self.speeds}
+        known = dict(zip(moving(symbols), symbols, strict=True)) | {CLOCK: n.TIME}
+        return known, {f.diff(CLOCK): n.rate_of(s) for f, s in zip(moving(self.speeds), self.speeds, strict=True)}
 
     def spin(self, body: RigidBody) -> list[sp.Expr]:
         """Return the components of a body's angular velocity along the axes of its inertia."""

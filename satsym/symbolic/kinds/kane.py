@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mpmath as mp
 import sympy as sp
-from sympy.physics.mechanics import KanesMethod, ReferenceFrame, RigidBody, dynamicsymbols
 
 from satsym.agreement import slopes
 from satsym.symbolic import notation as n
@@ -16,9 +15,12 @@ from satsym.symbolic.chain import named_parts, parts_of
 from satsym.symbolic.checks import Point, compare, identity, numeric_along, partial
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds import stated_as
-from satsym.symbolic.kinds.bodies import CLOCK, Bodies, axes_of
+from satsym.symbolic.kinds.bodies import CLOCK, Bodies, axes_of, moving
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.motion import steps as motion
+
+if TYPE_CHECKING:
+    from sympy.physics.mechanics import RigidBody
 
 MOST_OPERATIONS_UNNAMED = 300
 """Number of operations of the equations above which their common subexpressions receive names."""
@@ -103,8 +105,11 @@ def _summed(model: Bodies, so_far: Derivation, parts: list[tuple[sp.Symbol, sp.E
 
 def kane(so_far: Derivation) -> Step:
     """Derive Kane's equations M u' + b = Q, with names for common parts where they are long."""
+    from sympy.physics.mechanics import KanesMethod
+
     model = stated_as(Bodies, so_far)
-    functions = {s: dynamicsymbols(s.name) for s in (*symbols_of(model.states), *model.named)}
+    symbols = (*symbols_of(model.states), *model.named)
+    functions = dict(zip(symbols, moving(symbols), strict=True))
     kinematic = [functions[q].diff(CLOCK) - sp.sympify(r).xreplace(functions) for q, r in model.coordinates.items()]
     method = KanesMethod(
         model.inertial,
@@ -266,6 +271,8 @@ def _path(model: Bodies, point: Point) -> Any:
 
 def _newton_euler(model: Bodies, parts: list[tuple[sp.Symbol, sp.Expr]], values: Mapping[str, sp.Expr]) -> Check:
     """Evaluate the laws of Newton and Euler for each body, differentiated numerically in inertial axes."""
+    from sympy.physics.mechanics import ReferenceFrame
+
     inertial, speeds = model.inertial, model.speeds
     motions, changing, pushes = [], [], []
     for body in model.bodies:
