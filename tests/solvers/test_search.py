@@ -336,6 +336,24 @@ def test_the_first_duration_is_of_the_size_of_the_least() -> None:
         assert (sizes_of(case, controls, duration).states > 1e-6).all()
 
 
+def test_states_set_equal_at_the_end_have_scales_alike() -> None:
+    states = tuple(Variable(name, name, "1") for name in ("x", "v", "X"))
+    controls = (Variable("u", "u", "1"),)
+    x, v, target = symbols_of(states)
+    (u,) = symbols_of(controls)
+    model = FirstOrder(
+        name="pursuit",
+        title="P",
+        states=states,
+        controls=controls,
+        parameters=(),
+        rates={x: v, v: u, target: 1},
+    )
+    problem = Problem(name="pursued", title="P", model=model, running_cost=u**2 / 2, terminal_constraints=(x - target,))
+    case = satsym.Instance.of(problem, initial={"x": 1e-6, "v": 0.0, "X": 2.0}, tf=1.0).case
+    assert programme_of(case).sizes.states[0] == pytest.approx(2.0)
+
+
 def test_what_fails_its_certificate_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     case = instances.load("double-integrator-time")
     found = by_search.instead(case, None, certified=True)

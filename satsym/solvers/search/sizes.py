@@ -11,6 +11,7 @@ from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.solvers.failures import tried
 from satsym.solvers.search.controls import Controls, rates
+from satsym.solvers.search.points import Points
 from satsym.solvers.search.transcription import Sizes
 
 STEPS = 200
@@ -147,8 +148,21 @@ def _of_states(instance: Instance, controls: Controls, duration: float, rest: Re
         both = np.where((both > TELLING * others) | (others == 0.0), both, others)
         if not (both > 0.0).all():
             both = _through_others(instance, controls, duration, both, rest)
-    size = both
-    return np.where(size > 0.0, size, 1.0)
+    return _balanced(instance, controls, np.where(both > 0.0, both, 1.0))
+
+
+def _balanced(instance: Instance, controls: Controls, size: Array) -> Array:
+    """Raise the scales of states that a terminal condition sets against one state with a larger effect on it."""
+    n, size = len(size), size.copy()
+    points = Points(instance, controls, (), size)
+    y = np.zeros((points.local, 1))
+    y[:n, 0], y[-1] = instance.initial, instance.t0
+    slopes = np.nan_to_num(np.abs(points.slopes(points.ends, y)[:, :n, 0]))
+    for row in slopes:
+        pair = np.flatnonzero(row)
+        if len(pair) == 2:
+            size[pair] = np.maximum(size[pair], (row * size).max() / row[pair])
+    return size
 
 
 def _largest(instance: Instance, controls: Controls, x: Array) -> Array:
