@@ -8,11 +8,17 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.search.controls import Norm
+from satsym.solvers.search.sizes import ranges
 from satsym.solvers.search.transcription import DEGREE, SLOPES, Function, Places, Transcription
 
 
 class Programme(Transcription):
     """A nonlinear programme: a transcription with first and second derivatives."""
+
+    @cached_property
+    def ranges(self) -> Array:
+        """Largest ranges (n,) of states in the uncontrolled motions from both ends."""
+        return ranges(self.instance, self.controls, self.sizes.duration)
 
     @cached_property
     def _into(self) -> tuple[Array, Array, Places]:

@@ -8,7 +8,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.solvers.search.programme import Programme
-from satsym.solvers.search.sizes import ranges, wanted
+from satsym.solvers.search.sizes import wanted
 
 BASE = 3
 """Base of the sequence that spreads deviations between their smallest and largest values; starts alternate in pairs, so
@@ -47,7 +47,7 @@ def spread(programme: Programme, seed: int) -> Array:
     shows by itself how far cheap motions lead: a pendulum may start near its rest and turn over.
     """
     sizes = programme.sizes.states
-    wide = np.maximum(ranges(programme.instance, programme.controls, programme.sizes.duration) / sizes, 1.0)
+    wide = np.maximum(programme.ranges / sizes, 1.0)
     return np.asarray(sizes * wide ** _share(seed))
 
 
