@@ -108,6 +108,16 @@ def test_the_rate_of_a_state_without_a_velocity_is_a_letter_of_its_own(
     assert [row.verdict for row in audit(auditing.read(tmp_path / "orbit.ledger.toml"))] == ["confirmed"]
 
 
+def test_rates_of_states_are_what_the_equations_of_motion_say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("orbit.tex").write_text(r"\begin{equation} r^2 \dot f = h \end{equation}")
+    assert main(["read", "orbit.tex", "--model", "velocity_frame"]) == 0
+    path = tmp_path / "orbit.ledger.toml"
+    assert [row.verdict for row in audit(auditing.read(path))] == ["confirmed"]
+    path.write_text(path.read_text().replace('printed = "h"', 'printed = "2*h"'))
+    assert [row.verdict for row in audit(auditing.read(path))] != ["confirmed"]
+
+
 def test_displays_of_myst_have_their_labels_as_items(tmp_path: Path) -> None:
     path = tmp_path / "notes.md"
     path.write_text(

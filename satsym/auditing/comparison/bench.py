@@ -92,6 +92,11 @@ class Bench:
         return library.names(self.ledger.models, own | {n: table.positive for n, table in self.ledger.symbols.items()})
 
     @cached_property
+    def along_the_motion(self) -> Bench:
+        """The context in which rates of states are functions of the states, as they are along every motion."""
+        return _AlongTheMotion(self.ledger)
+
+    @cached_property
     def dimensions(self) -> Any:
         """Dimensions of all names whose dimension is known."""
         return library.dimensions_of(
@@ -298,3 +303,16 @@ class Bench:
             if sorted(places) == list(range(len(entries))):
                 return tuple(places)
         return tuple(range(len(entries)))
+
+
+class _AlongTheMotion(Bench):
+    """The context in which names of rates, such as ``d_x``, stand for what the equations of motion say of them."""
+
+    @cached_property
+    def names(self) -> Names:
+        """Names that rows may use; rates of states have definitions."""
+        found = Bench(self.ledger).names
+        rates = dict[str, Any]()
+        for model in self.ledger.models:
+            rates = library.rates_by_name(model, found) | rates
+        return Names(found.symbols, rates | dict(found.definitions))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.comparison.compare import plans
@@ -12,9 +12,10 @@ from satsym.auditing.diagnosis.smallest_edit import first_remedy, wrong_formula
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.sentences import Said, joined, say
-from satsym.formula.tree import Equality, Formula, Node, cells, grid, shaped
+from satsym.formula.tree import Equality, Formula, Node, cells, grid, names_in, shaped, symbols
+from satsym.formula.values import Relation
 from satsym.formula.writing import written
-from satsym.symbolic.lookup import library
+from satsym.symbolic.lookup import formulas, library
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
@@ -22,7 +23,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
     assert row.printed is not None
     ways = plans(bench, row, row.printed, bench.target(row))
     fault = dimension_fault(bench, row)
-    for compared in ways:
+    for compared in (*ways, *_plans_along_the_motion(bench, row)):
         if compared.is_right(compared.printed):
             derived = shown(compared, compared.printed)
             if fault and not _target_fault(bench, compared):
@@ -35,6 +36,29 @@ def judge(bench: Bench, row: Row) -> Outcome:
     if fault:
         remark = joined([remark, say("also_inhomogeneous", fault)])
     return Outcome(row, False, derived, compared, found, remark=remark)
+
+
+def _plans_along_the_motion(bench: Bench, row: Row) -> Iterator[Plan]:
+    """Yield plans in which rates of states are functions of the states, unless the target says no more then.
+
+    They are the last to be tried, since a row may be about the name of a rate itself.
+    """
+    assert row.printed is not None
+    if not any(name.startswith("d_") for name in _names_meant(bench, row)):
+        return
+    bench = bench.along_the_motion
+    target = bench.target(row)
+    if isinstance(target.exact, Relation) and formulas.is_zero(target.exact.lhs - target.exact.rhs):
+        return
+    yield from plans(bench, row, row.printed, target)
+
+
+def _names_meant(bench: Bench, row: Row) -> set[str]:
+    """Return the names of the models that the symbols of a row and its target mean."""
+    meanings, target = bench.meanings(row), bench.target(row).trees
+    sides = (target.lhs, target.rhs) if isinstance(target, Relation) else (target,)
+    trees = [*(meanings[name] for name in names_in(row.printed) if name in meanings), *sides]
+    return {name for tree in trees if isinstance(tree, Node) for name in symbols(tree)}
 
 
 def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:

@@ -163,6 +163,19 @@ def in_trees(value: Value) -> Value:
         raise BadInput(str(error)) from None
 
 
+def rates_by_name(model: str, shared: Names) -> dict[str, sp.Expr]:
+    """Return the rates of the states of a model, with definitions filled in, by names such as ``d_x``.
+
+    States whose rates are states themselves are left out.
+    """
+    found = shelf.find(model)
+    step = next((step for step in found.steps if step.name == "first_order"), None)
+    addresses = [f"{model}:first_order.{equation.name}" for equation in step.equations] if step else []
+    values = [at(address, shared, lambda entries: tuple(range(len(entries)))) for address in addresses]
+    rates = {value.lhs.name: value.rhs for value in values if isinstance(value, Relation) and value.lhs.is_Symbol}
+    return {name: rate for name, rate in rates.items() if not rate.is_Symbol}
+
+
 def rates(model: str) -> list[sp.Expr]:
     """Return the rates of the states of a model, in which definitions keep their names."""
     found, shared = shelf.find(model), names((model,), {})
