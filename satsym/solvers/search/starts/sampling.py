@@ -17,9 +17,9 @@ from satsym.solvers.search.sizes import wanted
 from satsym.solvers.search.starts import ends
 from satsym.solvers.simulation.together import steps_together
 
-GROUPS, STEPS = ((3, 1000), (8, 4000)), 128
-"""Numbers of starts in each group, and of the random motions that they are chosen from: the second group is drawn if
-the search goes on so far, because the first starts led to several costs. Number of Runge-Kutta steps of each motion."""
+GROUPS, STEPS = ((3, 1000), (8, 4000), (12, 4000)), 128
+"""Numbers of starts in each group, and of the random motions that they are chosen from: a further group is drawn if the
+search goes on so far, because the starts before led to several costs. Number of Runge-Kutta steps of each motion."""
 
 WEAKEST, STRONGEST, WAVES = 1e-3, 3.0, 4
 """Smallest and largest amplitude of random controls, relative to half their ranges or to their scales; number of
