@@ -31,7 +31,7 @@ from satsym.auditing.propositions.reading import (
     row_key,
 )
 from satsym.auditing.propositions.relations import Fit, compared
-from satsym.auditing.propositions.values import Family, Record, Undecided, alike, in_words, names_in_words
+from satsym.auditing.propositions.values import Family, Record, Undecided, alike, in_words, listed
 from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
@@ -85,11 +85,12 @@ class Evaluation:
     def term(self, proposition: Proposition, last: str = ", ") -> str:
         """Return the value of a term as text; "undecided" with the reason if it cannot be computed.
 
-        The last of several names or formulas that are texts follows after a word such as "and".
+        The last of several texts, or of numbers collected from several objects, follows after a word such as "and".
         """
+        collected = isinstance(proposition.tree, ast.ListComp)
         with np.errstate(all="ignore"):
             try:
-                return names_in_words(self._value(proposition.tree, {}), last)
+                return listed(self._value(proposition.tree, {}), last, numbers=collected)
             except Undecided as reason:
                 return f"undecided ({reason})"
 

@@ -136,11 +136,15 @@ def in_words(value: Any) -> str:
     return str(value)
 
 
-def names_in_words(value: Any, last: str) -> str:
-    """Return a short text for a value; names or formulas in a list are enumerated, each between backquotes."""
-    if not (isinstance(value, list) and value and all(isinstance(entry, str) for entry in value)):
+def listed(value: Any, last: str, *, numbers: bool = False) -> str:
+    """Return a short text for a value; names or formulas in a list are enumerated, each between backquotes.
+
+    With ``numbers``, numbers in a list are enumerated as well; otherwise such a list is shown as a vector.
+    """
+    kind = (str, int, float) if numbers else str
+    if not (isinstance(value, list) and value and all(isinstance(entry, kind) for entry in value)):
         return in_words(value)
-    *first, end = [f"`{entry}`" for entry in value]
+    *first, end = [f"`{entry}`" if isinstance(entry, str) else in_words(entry) for entry in value]
     if len(value) > _LISTED:
         return ", ".join([*first[:_LISTED], "..."])
     return f"{', '.join(first)}{last}{end}" if first else end

@@ -212,7 +212,7 @@ class Review:
         standing = [row for row in conclusions if row.key not in falling]
         said, total = [], len(conclusions)
         if causes:
-            reasons = "; ".join(f"({number}) {self._fallen(found)}" for number, found in causes)
+            reasons = self.points([f"({number}) {self._fallen(found)}" for number, found in causes])
             falls = self._say("falls", len(falling))
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
@@ -221,8 +221,12 @@ class Review:
             named = [f"{_quoted(row)} ({key})" if quoted else key for row, key in zip(standing, keys, strict=True)]
             parts = [f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
-            said.append(self._say(key, number, quoted="; ".join(parts)))
+            said.append(self._say(key, number, quoted=self.points(parts)))
         return said
+
+    def points(self, parts: Sequence[str]) -> str:
+        """Return the points of a sentence of the summary as one text."""
+        return "; ".join(parts)
 
     def _reserve(self, row: Judged) -> str:
         """State the reserve with which a conclusion is right."""

@@ -104,6 +104,9 @@ def _converted(tex: str, block: bool) -> Xml.Element | None:
     for word in element.iter("mi"):
         if word.text in _FUNCTIONS:  # as an identifier it would touch what stands beside it
             word.tag, word.attrib = "mo", {"form": "prefix", "lspace": "0.17em", "rspace": "0.17em"}
+    for bracket in element.iter("mo"):
+        if bracket.get("fence") == "true":  # browsers leave space around brackets of adjustable height
+            bracket.attrib |= {"lspace": "0", "rspace": "0"}
     for parent in element.iter():
         for before, sign in pairwise(parent):
             if (

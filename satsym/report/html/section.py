@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -44,7 +44,7 @@ _SPECIAL = re.compile(r"[*^]|_d?dot\b|_\w+/|/\w+_")
 _UNITS = frozenset("m s g N km kg cm dyn min h deg rad A J W V kelvin".split())
 """Names that are units where they stand in a product after a number."""
 _UNSET = re.compile(r"\\(?:mathrm|text)\{([A-Z])((?:\\?_[a-z]+\d*)+)\}")
-_REASON = re.compile(r"(?<=[:;] )\((\d+)\)")
+_REASON = re.compile(r"(?:^|(?<=[:;] ))\((\d+)\)(?= )")
 
 
 class PageReview(Review):
@@ -53,6 +53,10 @@ class PageReview(Review):
     def placed(self, name: str) -> str:
         """Return the name of a place, with a numbered point of a section as such."""
         return _POINT.sub(rf"\1, {self.texts.get('audit', 'point')} \2\3", super().placed(name))
+
+    def points(self, parts: Sequence[str]) -> str:
+        """Return the points of a sentence on lines of their own, which become a list; a single one stays in it."""
+        return "\n".join(["", *parts]) if len(parts) > 1 else super().points(parts)
 
 
 class Section:
@@ -72,14 +76,18 @@ class Section:
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
-        summary = tag(
-            "div", *(tag("p", self._sentence(text)) for text in review.summary), self._chart(), class_="summary"
-        )
+        summary = tag("div", *map(self._summarised, review.summary), self._chart(), class_="summary")
         if self._is_foreign and any(row.original for row in review.rows):
             byline.append(tag("p", self._word("quoted"), class_="byline"))
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
+
+    def _summarised(self, text: str) -> Markup:
+        """Return a sentence of the summary, whose points, if it has several, are a list."""
+        sentence, *points = text.split("\n")
+        listed = [tag("li", self._sentence(f"{point.rstrip('.')}.")) for point in points]
+        return Markup(tag("p", self._sentence(sentence.rstrip())) + (tag("ul", *listed) if listed else ""))
 
     def _chart(self) -> Markup:
         """Return a table with bars of how many rows of each kind are right, wrong and open."""
