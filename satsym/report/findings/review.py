@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
@@ -47,7 +47,7 @@ class Review:
     texts: Texts
 
     @classmethod
-    def of(cls, ledger: Ledger, rows: Sequence[Judged], texts: Texts) -> Review:
+    def of(cls, ledger: Ledger, rows: Sequence[Judged], texts: Texts) -> Self:
         """Make the review of a judged document, in a language as far as its words are known in it."""
         if texts.language == "id":
             rows = [_in_indonesian(row) for row in rows]
@@ -245,6 +245,21 @@ class Review:
 
     def _say(self, key: str, number: int, **fill: str) -> str:
         return self.texts.counted("audit", key, number, **fill)
+
+
+class ListedReview(Review):
+    """A review for pages and terminals, where the points of a sentence of the summary are a list."""
+
+    def points(self, parts: Sequence[str]) -> str:
+        """Return the points of a sentence on lines of their own; a single one stays in it."""
+        return "\n".join(["", *parts]) if len(parts) > 1 else super().points(parts)
+
+    @property
+    def summary_points(self) -> Iterator[tuple[str, list[str]]]:
+        """Return each sentence of the summary with its points, which are sentences as well."""
+        for text in self.summary:
+            sentence, *points = text.split("\n")
+            yield sentence.rstrip(), [f"{point.rstrip('.')}." for point in points]
 
 
 def title(reviews: Sequence[Review]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -20,7 +20,7 @@ from satsym.records import record, shelf
 from satsym.report.display import raised, with_raised_units
 from satsym.report.findings.review import (
     IN_FULL,
-    Review,
+    ListedReview,
     correction,
     flat,
     is_mathematical,
@@ -47,22 +47,18 @@ _UNSET = re.compile(r"\\(?:mathrm|text)\{([A-Z])((?:\\?_[a-z]+\d*)+)\}")
 _REASON = re.compile(r"(?:^|(?<=[:;] ))\((\d+)\)(?= )")
 
 
-class PageReview(Review):
+class PageReview(ListedReview):
     """A review whose places are written out, since pages give the command for each of them."""
 
     def placed(self, name: str) -> str:
         """Return the name of a place, with a numbered point of a section as such."""
         return _POINT.sub(rf"\1, {self.texts.get('audit', 'point')} \2\3", super().placed(name))
 
-    def points(self, parts: Sequence[str]) -> str:
-        """Return the points of a sentence on lines of their own, which become a list; a single one stays in it."""
-        return "\n".join(["", *parts]) if len(parts) > 1 else super().points(parts)
-
 
 class Section:
     """The section on one document."""
 
-    def __init__(self, review: Review) -> None:
+    def __init__(self, review: PageReview) -> None:
         self._review, self._texts = review, review.texts
         self._language = review.ledger.document.language
         self._is_foreign = self._language != review.texts.language
@@ -76,18 +72,18 @@ class Section:
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
-        summary = tag("div", *map(self._summarised, review.summary), self._chart(), class_="summary")
+        sentences = (self._summarised(*said) for said in review.summary_points)
+        summary = tag("div", *sentences, self._chart(), class_="summary")
         if self._is_foreign and any(row.original for row in review.rows):
             byline.append(tag("p", self._word("quoted"), class_="byline"))
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
 
-    def _summarised(self, text: str) -> Markup:
+    def _summarised(self, sentence: str, points: Iterable[str]) -> Markup:
         """Return a sentence of the summary, whose points, if it has several, are a list."""
-        sentence, *points = text.split("\n")
-        listed = [tag("li", self._sentence(f"{point.rstrip('.')}.")) for point in points]
-        return Markup(tag("p", self._sentence(sentence.rstrip())) + (tag("ul", *listed) if listed else ""))
+        listed = [tag("li", self._sentence(point)) for point in points]
+        return Markup(tag("p", self._sentence(sentence)) + (tag("ul", *listed) if listed else ""))
 
     def _chart(self) -> Markup:
         """Return a table with bars of how many rows of each kind are right, wrong and open."""

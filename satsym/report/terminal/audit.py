@@ -16,7 +16,7 @@ from satsym.auditing.ledger.coverage import KINDS, Coverage
 from satsym.auditing.sentences import in_indonesian
 from satsym.report.findings.review import (
     IN_FULL,
-    Review,
+    ListedReview,
     correction,
     flat,
     is_put_in_words,
@@ -66,7 +66,7 @@ def audit_text(
         Of all but what the documents print and of what is measured.
     """
     texts = load(language)
-    reviews = [Review.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    reviews = [ListedReview.of(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     return "\n\n".join("\n".join(_document(review, rows, code)) for review in reviews)
 
 
@@ -98,13 +98,15 @@ def _of_text(text: Coverage) -> Iterator[str]:
         yield from _wrapped(f"not in the text: {row}: {printable(piece, 200)}", 1)
 
 
-def _document(review: Review, rows: bool, code: bool) -> Iterator[str]:
+def _document(review: ListedReview, rows: bool, code: bool) -> Iterator[str]:
     texts = review.texts
     by = f" ({review.byline})" if review.byline else ""
     yield from _wrapped(f"{review.key}: {review.ledger.document.title}{by}", hanging=1)
     yield ""
-    for said in review.summary:
+    for said, points in review.summary_points:
         yield from _wrapped(said, 1)
+        for point in points:
+            yield from _wrapped(f"- {point}", 2, hanging=1)
     if len(review.rows) >= _CHARTED:
         yield from ("", *_chart(review))
     if not review.findings:
@@ -128,7 +130,7 @@ def _document(review: Review, rows: bool, code: bool) -> Iterator[str]:
         yield from ("", *_wrapped(texts.get("audit", "every_row", command=command), 1))
 
 
-def _chart(review: Review) -> Iterator[str]:
+def _chart(review: ListedReview) -> Iterator[str]:
     """Return bars of how many rows of each kind are right, wrong and open."""
     keys = ("stood", "fallen", "left_open")
     yield f"{_INDENT}{review.texts.get('audit', 'chart')}"
@@ -146,7 +148,7 @@ def _chart(review: Review) -> Iterator[str]:
     yield from _wrapped(review.items_that_hold, 2) if review.items_that_hold else ()
 
 
-def _in_full(review: Review, number: int, finding: Finding, rows: bool, code: bool) -> Iterator[str]:
+def _in_full(review: ListedReview, number: int, finding: Finding, rows: bool, code: bool) -> Iterator[str]:
     """Return a finding with the printed content, the true one, and its consequences; among rows, all of its row."""
     row, texts = finding.places[0], review.texts
     stands = f" ({review.placed(where(row))})" if where(row) else ""
@@ -158,12 +160,12 @@ def _in_full(review: Review, number: int, finding: Finding, rows: bool, code: bo
         yield from _wrapped(row.evidence if code else recompute(row)[1], 3)
 
 
-def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
+def _in_brief(review: ListedReview, number: int, finding: Finding) -> list[str]:
     """Return a finding in a sentence, without the printed content, which pages and the list of rows have."""
     return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
 
 
-def _row(review: Review, row: Judged, code: bool) -> Iterator[str]:
+def _row(review: ListedReview, row: Judged, code: bool) -> Iterator[str]:
     """Return a row in full."""
     yield ""
     stands = f" ({review.placed(where(row))})" if where(row) else ""
@@ -179,7 +181,7 @@ def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -
     return _wrapped(heading + printed, 1, hanging)
 
 
-def _facts(review: Review, row: Judged, *, short: bool = False, code: bool = False) -> Iterator[str]:
+def _facts(review: ListedReview, row: Judged, *, short: bool = False, code: bool = False) -> Iterator[str]:
     """Return the printed and the true content, each once, and code where requested."""
     claim, found = row.kind == "claim", measured(row)
     said = row.original or row.says if claim or not row.printed else ""
