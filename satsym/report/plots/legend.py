@@ -15,7 +15,7 @@ from satsym.report.plots.series import PASSED, REACHED, SWITCHED, Series
 from satsym.report.said import say
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
 HANDLE, CHARACTER = 0.62, 0.08
 """Width in inches on a screen of the sample of an entry, and of an average character of its label."""
@@ -62,17 +62,25 @@ def _marked(quantities: Iterable[Series], colour: str) -> list[tuple[str, str]]:
     ]
 
 
-def below(page: Figure, entries: list[Entry]) -> None:
-    """Put the legend below the axes; a single entry is left out, since the page says as much."""
+def below(page: Figure, entries: list[Entry], part: SubFigure | None = None, share: float = 1.0) -> None:
+    """Put the legend below the axes; a single entry is left out, since the page says as much.
+
+    Parameters
+    ----------
+    part
+        The part of the page below whose axes it stands, if not below those of the whole page.
+    share
+        Width of that part as a fraction of the width of the page.
+    """
     entries = list({label: (handle, label) for handle, label in entries}.values())
     if len(entries) > 1:
         handles, labels = zip(*entries, strict=True)
-        width = style.on_screen(page)
+        width = style.on_screen(page) * share
         most = -(-len(entries) // math.ceil(len(entries) / (PER_INCH * width)))
         across = next((n for n in range(most, 1, -1) if _width(labels, n) <= width), 1)
         room = int((width - HANDLE) / CHARACTER)
         shown = [textwrap.fill(label, room) if across == 1 else label for label in labels]
-        page.legend(handles, shown, loc="outside lower center", ncols=across)
+        (part or page).legend(handles, shown, loc="outside lower center", ncols=across)
 
 
 def _width(labels: Sequence[str], across: int) -> float:

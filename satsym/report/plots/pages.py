@@ -138,6 +138,8 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
 
 MOST_PANELS = 8
 """Largest number of states, and of controls, on the overview; the other pages show all of them."""
+TALL = 4
+"""Rows of panels from which the legend has room below the picture in space beside them."""
 
 
 def overview(scene: Scene) -> Figure | None:
@@ -160,6 +162,7 @@ def overview(scene: Scene) -> Figure | None:
         heading = _Heading.of(page, scene)
         head, right = _split(page, (2, 1), height_ratios=[heading.height, height - heading.height])
         heading.write(head, scene.result.status)
+    left = None
     if beside:
         apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
         left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
@@ -172,7 +175,11 @@ def overview(scene: Scene) -> Figure | None:
     entries = legend.motion(scene, style.STATE)[int(shown is None and turning is not None) :]
     entries += space.entries(shown) if shown is not None else attitudes.entries() if turning is not None else []
     entries += legend.on_axes([*states, *controls], style.CONTROL)
-    legend.below(page, entries + legend.on_axes(limits, style.INVARIANT))
+    entries += legend.on_axes(limits, style.INVARIANT)
+    if left is not None and not narrow and rows >= TALL:
+        legend.below(page, entries, left, 1.0 / 2.12)
+    else:
+        legend.below(page, entries)
     return page
 
 
