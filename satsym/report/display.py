@@ -31,6 +31,7 @@ _ONE = r"(?:km|m|cm|mm|kg|g|s|min|h|N|kN|J|W|V|A|rad|deg|kelvin)\b(?:(?:\*\*|\^)
 _MEASURED = re.compile(rf"(?<=\d ){_ONE}(?:[*/]{_ONE})*")
 """Unit after a number and a space."""
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
+_TEN = re.compile(r"(?<![\w.])(\d[\d.,]*)e([-+]\d+)(?![\w.]\d)")
 
 
 @lru_cache(maxsize=512)
@@ -157,6 +158,11 @@ def number(value: float, digits: int = 6) -> str:
 def times_ten_to(exponent: int) -> str:
     """Return the text after a number that is to be multiplied by a power of ten."""
     return f" × 10{str(exponent).translate(_RAISED)}"
+
+
+def with_powers(text: str) -> str:
+    """Write powers of ten in a sentence as in print: ``error 4e-15`` as error 4 × 10⁻¹⁵."""
+    return _TEN.sub(lambda found: f"{found[1]}{times_ten_to(int(found[2]))}", text)
 
 
 def time_scale(units: Iterable[str], span: float) -> tuple[float, str]:

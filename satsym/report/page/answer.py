@@ -9,7 +9,16 @@ from types import MappingProxyType
 from satsym.instance import Instance
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Enclosure, Outcome, Proof
-from satsym.report.display import capitalised, norm_latex, norm_text, number, radical, times_ten_to, unit_text
+from satsym.report.display import (
+    capitalised,
+    norm_latex,
+    norm_text,
+    number,
+    radical,
+    times_ten_to,
+    unit_text,
+    with_powers,
+)
 from satsym.report.html.markup import Markup, joined, math, scrolled, tag
 from satsym.report.results.objects import time_unit
 from satsym.report.said import counted, decimal, message, say
@@ -172,12 +181,6 @@ def table(caption: str, rows: Sequence[Sequence[str]], symbols: Mapping[str, str
 MINUS = "\N{MINUS SIGN}"
 _NUMBER = re.compile(rf"([-{MINUS}]?\d[\d.,]*)(e[-+]?\d+)?( %)?")
 _RANGE = re.compile(r"\[(\S+)([,;] )(\S+)\]")
-_POWER = re.compile(r"(?<![\w.])(\d[\d.,]*)e([-+]\d+)(?![\w.]\d)")
-
-
-def with_powers(text: str) -> str:
-    """Write powers of ten in a sentence as in print: ``error 4e-15`` as error 4 × 10⁻¹⁵."""
-    return _POWER.sub(lambda found: f"{found[1]}{times_ten_to(int(found[2]))}", text)
 
 
 def typeset(cell: str) -> str:

@@ -19,7 +19,7 @@ from satsym.instance.files import text as text_of
 from satsym.instance.shown import spec_of
 from satsym.proof.record import Proof
 from satsym.report import plots
-from satsym.report.display import norm_text, radical, raised, unit_text
+from satsym.report.display import norm_text, radical, raised, unit_text, with_powers
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.look import Look
 from satsym.report.page import answer
@@ -118,7 +118,7 @@ def _rendered(
     texts, instance = load(language), solution.instance
     authored = instance.title or instance.model.spec.title or instance.name
     said = say(authored)
-    title = raised(answer.with_powers(said))
+    title = raised(with_powers(said))
     parts = _sections(solution, derivation, given, texts, explored, proof)
     shown = {name: part for name, part in parts.items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]

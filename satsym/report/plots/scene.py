@@ -79,7 +79,8 @@ class Scene:
     @property
     def title(self) -> str:
         """Return the subject of the instance in one line."""
-        return display.raised(say(self.instance.title or self.spec.title) or self.instance.name)
+        title = say(self.instance.title or self.spec.title) or self.instance.name
+        return display.raised(display.with_powers(title))
 
     @property
     def nodes(self) -> Array:
