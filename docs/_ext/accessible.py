@@ -18,6 +18,8 @@ PERCENT, OPTION = re.compile(r"(?<=\d) (?=%)"), re.compile(r"(?<!\S)--(?=[a-z])"
 """The space before a sign of percent, and the hyphens of an option, where no line breaks."""
 SHORT = 32
 """Most letters of a piece of code that stays on one line."""
+COLUMNS, MANY, WORDS = 3, 6, 28
+"""Least number of columns, number that never fits a phone, and letters of a cell from which it does not fit."""
 
 
 def _put_right(app: Sphinx, failed: Exception | None) -> None:
@@ -29,8 +31,36 @@ def _put_right(app: Sphinx, failed: Exception | None) -> None:
         path.write_text(text, encoding="utf-8")
 
 
+def _without_last(table: nodes.table) -> None:
+    """Leave out the last column of a glossary, which is for those who write texts."""
+    table.next_node(nodes.tgroup)["cols"] -= 1
+    for column in (list(table.findall(nodes.colspec))[-1], *(row[-1] for row in table.findall(nodes.row))):
+        column.parent.remove(column)
+
+
+def _stack(table: nodes.table) -> None:
+    """Write the head of each column into its cells, for phones, which show the cells of a row below one another."""
+    head, body = table.next_node(nodes.thead), table.next_node(nodes.tbody)
+    columns = [entry.astext() for entry in head.findall(nodes.entry)] if head else []
+    if len(columns) < COLUMNS:
+        return
+    cells = [list(zip(columns, row.children, strict=True)) for row in body.findall(nodes.row)]
+    if len(columns) < MANY and max(len(cell.astext()) for row in cells for _, cell in row[1:]) < WORDS:
+        table["classes"].append("narrow")
+        return
+    table["classes"].append("stacked")
+    for _, cell in (pair for row in cells for pair in row[1:]):
+        cell["classes"] += [] if cell.astext().strip() else ["nothing"]
+    for column, cell in (pair for row in cells for pair in row[1:] if pair[1].children):
+        cell[0].insert(0, nodes.inline("", column, classes=["column"]))
+
+
 def _set(app: Sphinx, page: nodes.document, name: str) -> None:
     """Keep short code on one line, so that options do not break at their hyphens, and typeset dashes and percents."""
+    for table in page.findall(nodes.table):
+        if name.startswith("glossary"):
+            _without_last(table)
+        _stack(table)
     for code in page.findall(nodes.literal):
         if len(code.astext()) <= SHORT:
             code["classes"].append("short")
