@@ -110,3 +110,9 @@ def test_the_command_shows_keys_schema_and_files(capsys: pytest.CaptureFixture[s
     assert main(["instances", "soft-retrun"]) == 3
     assert 'did you mean "soft-return"?' in capsys.readouterr().err
     assert main(["instances", "--keys", "--schema"]) == 2
+
+
+def test_the_example_of_the_page_is_an_instance(tmp_path: Path) -> None:
+    example = page.HEAD.partition("```toml\n")[2].partition("```")[0]
+    (tmp_path / "example.toml").write_text(example, encoding="utf-8")
+    assert instance.load(tmp_path / "example.toml").tf == 86400.0

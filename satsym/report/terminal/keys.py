@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import textwrap
-from itertools import groupby
+from itertools import compress, groupby
 from pathlib import Path
 
 from satsym.instance.keys import Entry, entries
@@ -14,15 +14,48 @@ HEAD = """# Instance files
 
 <!-- Written by `make derive` from satsym/instance/schema.py: do not edit. -->
 
-An instance is one case of a model, in TOML. `satsym instances` lists those that come with satsym,
-`satsym instances soft-return` shows one, `satsym new my_case --instance soft-return` copies one to start from.
-`satsym instances --keys` prints this page. Editors that support TOML can complete and check an instance file:
-write the keys as a JSON Schema, `satsym instances --schema > instance.schema.json`, and begin the file with the line
-`#:schema instance.schema.json`.
+An instance is a problem with its numbers: a model, the values of its parameters, and the conditions at both ends. It is
+a short TOML file. This page lists all keys of such a file; [start in five minutes](start.md) shows a first one.
+
+```toml
+model = "polar_orbit"
+title = "A return in one day"
+
+[parameters]
+sigma = "42164.17 km"
+omega = "7.2921159e-5 rad/s"
+
+[initial]
+r = "42169.17 km"
+r_dot = 0.0
+theta = "0.02 deg"
+theta_dot = "7.2921159e-5 rad/s"
+
+[final]
+r = "reference"
+r_dot = "reference"
+theta = "reference"
+theta_dot = "reference"
+
+[time]
+tf = "1 day"
+```
 
 `model`, `[initial]` and `[time] tf` are all that solving needs. Names in capitals stand for those of the model, which
 `satsym models MODEL` lists with their units and defaults. A number is in the unit that is listed; a text may carry its
 own, such as `"5 km"`. Unknown keys are rejected.
+
+| command | what it does |
+| --- | --- |
+| `satsym instances` | lists the instances that come with satsym |
+| `satsym instances soft-return` | prints one of them |
+| `satsym new my_case --instance soft-return` | copies one, to start from |
+| `satsym instances --keys` | prints the keys of this page |
+| `satsym instances --schema` | prints the keys as a JSON Schema |
+
+Editors that support TOML can complete and check an instance file: write the schema to a file by
+`satsym instances --schema > instance.schema.json`, and begin the instance file with the line
+`#:schema instance.schema.json`.
 """
 
 
@@ -66,7 +99,9 @@ def page() -> str:
             (f"`{key}`", value, unit, default if default in ("", REQUIRED) else f"`{default}`", *more)
             for key, value, unit, default, *more in rows
         ]
-        lines = [f"| {' | '.join(cells)} |" for cells in (TITLES, ["---"] * len(TITLES), *marked)]
+        used = [any(column) for column in zip(*marked, strict=True)]
+        table = (compress(cells, used) for cells in (TITLES, ["---"] * len(TITLES), *marked))
+        lines = [f"| {' | '.join(cells)} |" for cells in table]
         blocks.append("\n".join([f"## {f'`{title}`' if title.startswith('[') else title}", "", *lines, ""]))
     return "\n".join(blocks)
 
