@@ -14,7 +14,8 @@ from pathlib import Path
 BUILT = Path(__file__).parents[1] / "docs" / "_build" / "html"
 PAGES = (
     "index start howto theory gallery gallery/transfer-fuel instances models glossary documents comparison asked "
-    "notebook notebook_class notebook_system notebook_study models_without_cost studies developers reference/commands "
+    "conditions constraints notebook notebook_class notebook_system notebook_study models_without_cost studies "
+    "developers reference/commands "
     "reference/python tutorials/judge tutorials/return tutorials/own_system tutorials/study proved optima audit "
     "architecture gallery/molniya gallery/uny-lqr"
 )

@@ -1,17 +1,23 @@
-"""Figures of the theory and of the tutorials, drawn from solutions; kept until the solvers or this file change."""
+"""Figures of the theory and of the tutorials, and the page of an audit; kept until the code or this file changes."""
 
 import io
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from cards import HIGH as HIGH_CARD
+from cards import LETTERS, WIDE
 from gallery import KEPT, printed, themed
 from sphinx.application import Sphinx
 
-HIGH = 4.3
-"""Height of a figure, in inches on a screen."""
+HIGH, LONG = 4.3, 7.6
+"""Heights of a figure and of one with a line for each problem, in inches on a screen."""
+DOCS = Path(__file__).parents[1]
+TIMED = re.compile(r"^\| \[([\w-]+)\]\S+ \| ([\d.]+) \| ([\d.]+) \| ([^|]+) \|([^|]*)\|$", re.MULTILINE)
+"""A line of the table of times: name, time, time with the certificate, time of the direct method, ratio."""
 
 
 def bang_bang(page: Any, style: Any) -> None:
@@ -42,7 +48,8 @@ def conjugate(page: Any, style: Any) -> None:
         place.plot(times, size * np.sin(times), color=style.BLUE, linewidth=0.9)
     place.plot([0.0], [0.0], "o", color=style.GREEN)
     place.plot([np.pi], [0.0], "o", color=style.VERMILION)
-    place.text(np.pi, 0.8, "conjugate point", color=style.VERMILION, ha="center")
+    place.text(1.25 * np.pi, 1.12, "conjugate point", color=style.VERMILION, ha="right")
+    place.set_ylim(-1.1, 1.35)
     place.set_xlabel("time")
     place.set_ylabel("state")
 
@@ -83,6 +90,43 @@ def free_time(page: Any, style: Any) -> None:
     place.legend(frameon=False)
 
 
+def valley(page: Any, style: Any) -> None:
+    """Cost of returns to the orbit over two initial values."""
+    import numpy as np
+
+    import satsym
+
+    values = (0.9, 1.1, 11)
+    with TemporaryDirectory() as out:
+        found = satsym.study("return-to-orbit", out, vary={"initial.r": values, "initial.theta_dot": values})
+        radii, rates, cost = (found[name] for name in ("initial.r", "initial.theta_dot", "objective"))
+    place = page.subplots()
+    place.tricontourf(np.asarray(radii), np.asarray(rates), np.asarray(cost), levels=14)
+    place.set_xlabel("$r(t_0)$")
+    place.set_ylabel(r"$\dot{\theta}(t_0)$")
+    place.locator_params(nbins=4)
+
+
+def times(page: Any, style: Any) -> None:
+    """Processor times of satsym and of a direct method, as the page of known optima lists them."""
+    place, listed = page.subplots(), TIMED.findall((DOCS / "optima.md").read_text("utf-8"))
+    rows = sorted(listed, key=lambda row: float(row[1]), reverse=True)
+    names, ours, certified = ([row[k] for row in rows] for k in range(3))
+    theirs = [(float(row[3]), k) for k, row in enumerate(rows) if row[4].strip()]
+    place.plot([float(one) for one in ours], names, "o", color=style.BLUE, label="satsym")
+    place.plot(
+        [float(one) for one in certified], names, "o", color=style.BLUE, fillstyle="none", label="with certificate"
+    )
+    place.plot(*zip(*theirs, strict=True), "s", color=style.VERMILION, label="direct method")
+    place.set_xscale("log")
+    place.set_xlim(0.02, 1000.0)
+    missing = [k for k, row in enumerate(rows) if not row[4].strip()]
+    place.plot([700.0] * len(missing), missing, "x", color=style.VERMILION)
+    place.set_xlabel("processor time [s]")
+    place.grid(axis="y", linewidth=0.4)
+    place.legend(loc="lower center", frameon=False, ncols=3, bbox_to_anchor=(0.5, 1.0))
+
+
 def sled() -> str:
     """The picture of the tutorial's own system."""
     import sympy
@@ -121,14 +165,21 @@ def _overview(found: Any) -> str:
     return stream.getvalue().decode("utf-8")
 
 
-def _drawn(draw: Callable[[Any, Any], None]) -> str:
+def _drawn(draw: Callable[[Any, Any], None], high: float = HIGH, share: float = 1.0) -> str:
     from satsym.report.look import Look
     from satsym.report.plots import style
 
     with style.applied(Look(("svg",), titled=False, size="page")):
-        page = style.figure(style.WIDTH, HIGH)
+        page = style.figure(share * style.WIDTH, high)
         draw(page, style)
         return style.rendered(style.finished(page), "svg").decode("utf-8")
+
+
+def _carded(draw: Callable[[Any, Any], None]) -> str:
+    """A figure as small as a card of the gallery, with letters as large as on those."""
+    from satsym.report.plots import style
+
+    return _drawn(draw, LETTERS * style.WIDTH * HIGH_CARD / WIDE, LETTERS)
 
 
 FIGURES: dict[str, Callable[[], str]] = {
@@ -136,6 +187,9 @@ FIGURES: dict[str, Callable[[], str]] = {
     "conjugate": lambda: _drawn(conjugate),
     "constraint": lambda: _drawn(constraint),
     "free_time": lambda: _drawn(free_time),
+    "times": lambda: _drawn(times, LONG),
+    "conjugate-card": lambda: _carded(conjugate),
+    "map-card": lambda: _carded(valley),
     "sled": sled,
     "study": lambda: study(*"--vary initial.r=0.95:1.15:9".split()),  # as the tutorial has it, and the sample as well
     "map": lambda: study(*"--vary initial.r=0.9:1.1:11 --vary initial.theta_dot=0.9:1.1:11".split()),
@@ -145,19 +199,28 @@ FIGURES: dict[str, Callable[[], str]] = {
 }
 
 
+AUDITED = "its_paper"
+"""The document whose audit is shown as a page: that of the five that takes least time."""
+
+
+def _audit(folder: Path) -> None:
+    printed(["audit", AUDITED, "--html", str(folder / f"{AUDITED}.html")])
+
+
 def _keep(name: str, folder: Path) -> None:
     (folder / f"{name}.svg").write_text(themed(FIGURES[name]()), "utf-8")
 
 
 def begin(app: Sphinx, work: Any) -> None:
-    """Draw the figures that are not kept."""
+    """Draw the figures that are not kept, and write the page of an audit."""
     from satsym import source_files
 
     folder = Path(app.srcdir, "_static", "figures")
     folder.mkdir(parents=True, exist_ok=True)
-    code = source_files.digest(["satsym.solvers", "satsym.report.plots"])
-    key = f"{code} {source_files.digest_of(Path(__file__))}"
+    code = source_files.digest(["satsym.solvers", "satsym.report.plots", "satsym.auditing", "satsym.report.html"])
+    key = f"{code} {source_files.digest_of(Path(__file__))} {source_files.digest_of(DOCS / 'optima.md')}"
     kept = folder / "key"
     if kept.is_file() and (kept.read_text("utf-8") == key or os.environ.get(KEPT)):
         return
-    work.begin([(_keep, (name, folder)) for name in FIGURES], lambda _: kept.write_text(key, "utf-8"))
+    jobs = [(_audit, (folder,)), *((_keep, (name, folder)) for name in FIGURES)]
+    work.begin(jobs, lambda _: kept.write_text(key, "utf-8"))

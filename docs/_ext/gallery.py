@@ -26,15 +26,16 @@ import cards
 from sphinx.application import Sphinx
 from statements import about, statement
 
-from satsym.report.display import raised
+from satsym.report.display import raised, with_powers
 
 COLOURS = r"(:root \{.*?\}\s*)(@media \(prefers-color-scheme: dark\) \{.*?\}\s*\})"
 """What a style sheet of a page begins with."""
 WRITTEN = "<!-- Written by `make docs`: do not edit. -->\n"
 HEAD = f"""{WRITTEN}# Gallery
 
-The gallery contains every shipped instance, by subject. Each page shows the problem, the code, the pictures, and
-everything that the command prints, including the certificate.
+Look for the example that is closest to your problem, and start from a copy of it. The gallery contains every shipped
+instance, by subject. Each page shows the pictures, the problem, the code, and everything that the command prints,
+including the certificate.
 """
 COMMANDS = {
     "lqr": "geo-lqr uny-lqr uny-lqr-both lapan-roll-yaw-lqr",
@@ -71,6 +72,17 @@ EXPLORE = (
 )
 KEPT = "SATSYM_DOCS_KEPT"
 """Variable of the environment: set, it shows examples as they were kept, for those who write other pages."""
+RESULTS = {
+    "lqr": "The result is a regulator with its closed loop.",
+    "analyse": "The result is an analysis of the motion.",
+    "compare": "The result is a comparison of control laws.",
+}
+"""What commands without a certificate give, in a sentence."""
+ELSEWHERE = {
+    "optima.md": "Its optimum [is known](../optima.md) from another source.",
+    "proved.md": "[What is proved](../proved.md#proved-optima) lists the result of its proof.",
+}
+"""Pages that treat examples, and what they have of one that they link to."""
 COLUMNS = 96
 """Letters of a line of code on a page."""
 BEHIND = re.compile(r"((?:[^#\"]|\"[^\"]*\")+)(# .*)")
@@ -197,8 +209,8 @@ def themed(svg: str) -> str:
     return f"{element}><style>{colours}svg {{ fill: var(--ink); }}</style>{inside}"
 
 
-def page(known: dict[str, Any], root: Path) -> str:
-    """The page of one instance."""
+def page(known: dict[str, Any], others: list[dict[str, Any]], root: Path) -> str:
+    """The page of one instance, with links to those before and after it in the overview."""
     from satsym import instance
 
     name, model = known["name"], known["model"]
@@ -208,20 +220,45 @@ def page(known: dict[str, Any], root: Path) -> str:
     python = {"solve": "solution = satsym.solve", "simulate": "motion = satsym.simulate", "lqr": "gain = satsym.lqr"}
     call = python.get(known["command"], "found = satsym.analyse")
     code = f'import satsym\n\n{call}("{name}")' + ("\nsolution.plot()" if known["command"] == "solve" else "")
+    run = f"satsym {known['command']} {name}"
     parts = [
         f"---\norphan: true\n---\n\n{WRITTEN}# {titled(known)}\n",
-        "Back to the [gallery](../gallery.md).\n",
+        f"{introduced(known, root / 'docs')}\n",
         *(f"{picture(known, part, root)}\n" for part in known["pictures"]),
         f"## Problem\n\n{about(root / known['source'])}\n\n{stated}{quantities(case)}",
         f"The instance `{name}` provides the numerical values:\n\n```toml\n{narrow(known['file'])}\n```\n",
-        f"## Code\n\n```sh\nsatsym {known['command']} {name} --plot\nsatsym {known['command']} {name} {alone}\n```\n",
+        f"## How to run it\n\n```sh\n{run} --plot\n{run} {alone}\n```\n",
         f"```python\n{code}\n```\n" if known["command"] != "compare" else "",
         f"## What it prints\n\n```text\n{known['text']}\n```\n",
         f"## Derivation\n\nEvery step is typeset in {{download}}`{model}.tex <../../generated/{model}.tex>`; "
         f"`satsym latex {model}` writes this file; the physics is stated in "
         f"{{download}}`{known['source']} <../../{known['source']}>`.\n",
+        following(known, others),
     ]
     return "\n".join(filter(None, parts))
+
+
+def introduced(known: dict[str, Any], docs: Path) -> str:
+    """What the page shows, what came of it, and where else the example is treated."""
+    name = known["name"]
+    said = RESULTS.get(known["command"]) or f"The result is *{known['verdict']}*."
+    elsewhere = [
+        sentence for page, sentence in ELSEWHERE.items() if f"(gallery/{name}.md)" in (docs / page).read_text("utf-8")
+    ]
+    return " ".join(
+        [f"An example of the [gallery](../gallery.md): `satsym {known['command']} {name}`.", said, *elsewhere]
+    )
+
+
+def following(known: dict[str, Any], others: list[dict[str, Any]]) -> str:
+    """Links to the examples before and after one, and to what helps to change it."""
+    at = [one["name"] for one in others].index(known["name"])
+    beside = [("Previous", at - 1), ("Next", at + 1)]
+    linked = [
+        f"- {word} example: [{titled(others[k])}]({others[k]['name']}.md)" for word, k in beside if 0 <= k < len(others)
+    ]
+    copied = f"- To change this example, copy it with `satsym new my_case --instance {known['name']}`"
+    return "\n".join(["## Next\n", f"{copied}; [its keys](../instances.md) are those of all instances.", *linked, ""])
 
 
 def narrow(text: str) -> str:
@@ -261,7 +298,7 @@ def quantities(case: Any) -> str:
 
 def titled(known: dict[str, Any]) -> str:
     """The title of an instance, with the signs that it has in print."""
-    return raised(known["title"]).replace("<=", "≤").replace(">=", "≥")
+    return raised(with_powers(known["title"])).replace("<=", "≤").replace(">=", "≥")
 
 
 def picture(known: dict[str, Any], part: str, root: Path) -> str:
@@ -301,6 +338,7 @@ def overview(every: dict[str, dict[str, Any]]) -> Iterator[str]:
 def begin(app: Sphinx, work: Any) -> None:
     """Solve and draw the instances that are not kept, and write their pages and the overview."""
     from satsym import instance
+    from satsym.report.terminal.listing import INSTANCES, by_subject
 
     source = Path(app.srcdir)
     folder, pages = source / "_static" / "gallery", source / "gallery"
@@ -312,8 +350,9 @@ def begin(app: Sphinx, work: Any) -> None:
 
     def done(found: list[dict[str, Any]]) -> None:
         every = {known["name"]: known for known in found}
+        ordered = [every[name] for names in by_subject(every, INSTANCES).values() for name in names]
         for name, known in every.items():
-            put(pages / f"{name}.md", page(known, source.parent))
+            put(pages / f"{name}.md", page(known, ordered, source.parent))
         for path in pages.glob("*.md"):
             if path.stem not in every:
                 path.unlink()

@@ -24,6 +24,9 @@ GROUPS = {
 SHOWN_WHOLE = list(GROUPS)[:-1]
 """With methods and properties; what is stated is on a page of its own."""
 MEMBERS = "   :members:\n   :inherited-members: Mapping, Generic, ABC, NDArrayOperatorsMixin\n"
+COMMANDS = """This page lists every command with its options and examples, as `satsym COMMAND --help` prints them. For
+tasks, see [how to](../howto.md); for a first use, see [start in five minutes](../start.md).
+"""
 HEAD = "<!-- Written by `make docs`: do not edit. -->\n"
 
 
@@ -33,7 +36,7 @@ def commands() -> str:
     from satsym.cli.app import program
 
     context = program.make_context("satsym", [], resilient_parsing=True)
-    parts = [HEAD, "# Commands\n", _block(program.get_help(context))]
+    parts = [HEAD, "# Commands\n", COMMANDS, _block(program.get_help(context))]
     for name in program.list_commands(context):
         command = program.get_command(context, name)
         inside = click.Context(command, info_name=name, parent=context)

@@ -42,8 +42,9 @@ TURNS, LONG = 3, 5.0
 
 INTRODUCTION = """# Known optima
 
-For each of these shipped instances, the optimum is known from a source other than satsym. satsym solves each of them
-from a cold start, without an initial guess. The differences are relative. The last section says how each optimum
+How accurate is satsym, and how fast? For each of these shipped instances, the optimum is known from a source other than
+satsym. satsym solves each of them from a cold start, without an initial guess. The table compares the optima; the
+differences are relative. The sections below it compare times with those of a direct method, and say how each optimum
 was found. `make bench-optima` writes this page.
 
 """
@@ -60,6 +61,12 @@ The direct method is CasADi's collocation with Ipopt, for the same problem.
 
 All times are in seconds of processor time. Each is the minimum of three runs after a warm-up run, so that loading
 libraries is not counted.
+
+```{raw} html
+<figure class='example'><img src='_static/figures/times.svg' alt='The times of the table' loading='lazy'><figcaption>The
+times of the table below. A cross at the right edge marks a problem for which the direct method did not reach this
+accuracy or was not tried.</figcaption></figure>
+```
 
 """
 HEADS = tuple("instance source optimum satsym difference verdict".split())
@@ -112,7 +119,7 @@ class Row:
             self.entry["source"],
             f"{self.entry['optimum']:.11g}",
             f"{self.objective:.11g}" if self.found.status.answered else self.found.status.value,
-            f"{self.difference:.0e}",
+            f"{self.difference:.0e}" if self.difference else "0",
             proof.verdict.value if proof else "none",
             f"{self.seconds:.2f}",
             f"{self.whole:.2f}",
@@ -164,7 +171,7 @@ def page_of(cells: list[tuple[str, ...]], routes: Mapping[str, str], agreement: 
     linked = [(f"[{name}](gallery/{name}.md)", *others) for name, *others in cells]
     known = _table(HEADS, [one[: len(HEADS)] for one in linked])
     times = _table(TIMED, [(one[0], *one[len(HEADS) :]) for one in linked])
-    found = "\n".join(f"- **{name}**: {route}" for name, route in routes.items())
+    found = "\n".join(f"- **[{name}](gallery/{name}.md)**: {route}" for name, route in routes.items())
     return (
         f"{INTRODUCTION}{known}\n{agreement}\n\n{TIMES}{times}\n{speed}\n\n## Where the optima come from\n\n{found}\n"
     )

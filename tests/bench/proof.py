@@ -53,9 +53,14 @@ def of_shipped(names: Sequence[str]) -> list[tuple[str, Proof, float]]:
     return found
 
 
+def linked(name: str) -> str:
+    """Return a link to the page of an instance."""
+    return f"[{name}](gallery/{name}.md)"
+
+
 def table(found: list[tuple[str, Proof, float]]) -> str:
     """The rows of the page."""
-    lines = ["| instance | objective J | final time | theorem | s |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| instance | objective J | final time | theorem | seconds |", "| --- | --- | --- | --- | --- |"]
     for name, proof, seconds in found:
         if proof.status is Outcome.PROVED:
             assert proof.theorem
@@ -65,7 +70,7 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
                 one.text.replace("+/- ", "\N{PLUS-MINUS SIGN}\N{NO-BREAK SPACE}")
                 for one in (proof.objective, proof.t_final)
             ]
-            cells = [name, *known, proof.theorem.name, f"{seconds:.1f}"]
+            cells = [linked(name), *known, proof.theorem.name, f"{seconds:.1f}"]
             lines.append("| " + " | ".join(cells) + " |")
     lines += [
         "",
@@ -74,7 +79,7 @@ def table(found: list[tuple[str, Proof, float]]) -> str:
         "",
     ]
     lines += ["| instance | status | reason |", "| --- | --- | --- |"]
-    lines += [f"| {n} | {p.status.value} | {p.reason} |" for n, p, _ in found if p.status is not Outcome.PROVED]
+    lines += [f"| {linked(n)} | {p.status.value} | {p.reason} |" for n, p, _ in found if p.status is not Outcome.PROVED]
     return "\n".join(lines) + "\n"
 
 

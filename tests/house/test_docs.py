@@ -18,7 +18,7 @@ from satsym import cli
 
 DOCS = Path(__file__).parents[2] / "docs"
 READMES = [DOCS.parent / "README.md", DOCS.parent / "README.id.md"]
-SINGLE = ("index", "start", "howto", "asked", "models_without_cost")
+SINGLE = ("index", "start", "howto", "asked", "models_without_cost", "conditions", "models", "proved", "studies")
 PAGES = [*(DOCS / f"{name}.md" for name in SINGLE), *sorted((DOCS / "tutorials").glob("*.md"))]
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -47,7 +47,8 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def files(text: str) -> Iterator[tuple[str, str]]:
-    """Each file that is shown whole, by the name that its first line says."""
+    """Each file that is shown whole, by the name that its first line or the line before it says."""
+    yield from re.findall(r"`(\w+\.py)`[^\n]*:\n\n```python\n(.*?)```", text, re.DOTALL)
     yield from re.findall(r"```(?:toml|python)\n# (\w+\.(?:toml|py))\n(.*?)```", text, re.DOTALL)
     for name, content in re.findall(r"```latex\n% (\w+\.tex)\n(.*?)```", text, re.DOTALL):
         yield name, f"% {name}\n{content}"
