@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.rows import split
 from satsym.auditing.latex.tokens import Token, has_bold
-from satsym.auditing.latex.words import DECORATIONS, FUNCTIONS, RECIPROCALS, SHIFTED, UPRIGHT
+from satsym.auditing.latex.words import COUNTERS, DECORATIONS, FUNCTIONS, RECIPROCALS, SHIFTED, UPRIGHT
 
 _FUNCTIONS = frozenset("f F phi varphi Phi varPhi psi Psi chi Gamma zeta delta Delta d".split())
 """Letters of functions and operators, behind which no bracket is a factor for sure."""
@@ -52,8 +52,10 @@ def may_be_argument(letter: Letter, inside: Sequence[Token], raised: bool) -> bo
         return True
     if len(terms) == 1:
         return _may_be_single(letter, inside, terms[0], plain, raised)
+    timed = set(heads) <= {*_TIMES, "T"} and not _TIMES.isdisjoint(heads) and not any(t.is_sign("-") for t in inside)
     return (
-        _may_be_in_time(letter, terms, heads)
+        (timed and letter.base not in _RATES)
+        or _may_be_in_time(letter, terms, heads)
         or (plain and _may_be_next(letter, terms, heads))
         or _may_be_varied(letter, terms, heads)
         or (plain and letter.base in _TURNS and all(head in GREEK or not head for head in heads))
@@ -83,6 +85,18 @@ def is_varied(inside: Sequence[Token]) -> bool:
     return len(terms) > 1 and (_may_be_in_time(unknown, terms, heads) or _may_be_varied(unknown, terms, heads))
 
 
+def is_step(part: Sequence[Token]) -> bool:
+    """Return whether the tokens are a letter with a number or counter added or subtracted, like a later step."""
+    counts = len(part) == 3 and (part[2].kind == "number" or part[2].text in COUNTERS)
+    return counts and part[0].kind == "letter" and part[1].text in ("+", "-")
+
+
+def is_lapse(part: Sequence[Token]) -> bool:
+    """Return whether the tokens are a difference of two times."""
+    named = [t.text for k, t in enumerate(part) if t.kind in ("letter", "macro") and part[k - 1].text not in "_{"]
+    return len(named) == 2 and set(named) <= {"t", "tau", "s", "T"} and "-" in {t.text for t in part}
+
+
 def _may_be_single(letter: Letter, inside: Sequence[Token], term: Sequence[Token], plain: bool, raised: bool) -> bool:
     """Return whether a bracket with one term, such as -x, 2x or x/2, could be an argument."""
     if raised:
@@ -92,7 +106,7 @@ def _may_be_single(letter: Letter, inside: Sequence[Token], term: Sequence[Token
     counted = term[0].kind == "number" and len(term) > 1 and (term[1].kind == "letter" or term[1].text in GREEK)
     negative = inside[0].is_sign("-") and _head(term) in _VARIABLES | _TIMES and len(term) == 1
     divided = any(t.text in ("/", "frac", "dfrac", "tfrac") for t in term)
-    divided &= letter.base in _OFTEN_FUNCTIONS | SHIFTED and not letter.dots
+    divided &= letter.base in _OFTEN_FUNCTIONS | SHIFTED | {"sigma"} and not letter.dots
     return (counted and plain) or negative or (divided and bool(_named(term) & (_VARIABLES | _TIMES)))
 
 

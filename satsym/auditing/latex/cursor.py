@@ -26,6 +26,8 @@ from satsym.wording import printable
 CONSTANT = "constant"
 """Name of a constant of unspecified value: a quantity equated with it does not change in time."""
 
+_MEASURED = 10
+"""Number from which a number before one letter measures something, rather than being a factor."""
 MIXED_BRACKETS = "brackets of different kinds, as around a half-open interval, are not supported"
 
 
@@ -44,6 +46,12 @@ class Reading:
     """Whether a bracket that could hold an argument passes for a factor, until it is known which letters have any."""
     transposing: bool = False
     """Whether primes denote transposition in the formula."""
+    matrices: set[str] = field(default_factory=set)
+    """Names of capital letters that are inverted or transposed."""
+    timed: set[str] = field(default_factory=set)
+    """Names of letters that are printed as functions of time."""
+    integrated: set[str] = field(default_factory=set)
+    """Names of the variables of integration."""
     differential: int = -1
     """Position of a differential that belongs to no derivative or integral; -1 if there is none."""
     constants: bool = False
@@ -263,6 +271,15 @@ class Cursor(ABC):
 def listed(node: Node) -> tuple[Node, ...]:
     """Return the members of a list; of anything else, itself alone."""
     return node.arguments if isinstance(node, Call) and node.function == "list" else (node,)
+
+
+def refuse_unit(part: Sequence[Token]) -> None:
+    """Refuse a number with one letter that could be its unit, if nothing else stands there."""
+    if [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS:
+        number, letter = part
+        apart = letter.at > number.at + len(number.text) + 1
+        if apart or "." in number.text or float(number.text) >= _MEASURED:
+            raise Unread("this could be a unit or a factor; set units upright", letter.at)
 
 
 def are_units(part: Sequence[Token]) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import accumulate, pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import CONSTANT, bar_in, listed
+from satsym.auditing.latex.cursor import CONSTANT, bar_in, listed, refuse_unit
 from satsym.auditing.latex.letters import GREEK, Letter, cleaned
 from satsym.auditing.latex.refusals import RefusalCursor
 from satsym.auditing.latex.remarks import REMARK
@@ -17,6 +17,9 @@ from satsym.auditing.latex.tokens import END, Token, Unread
 from satsym.auditing.latex.words import ACCENTS, FUNCTIONS
 from satsym.formula.tree import Add, Call, Grid, Mul, Node, Pow, Sym, Text, constant, symbols
 
+_BARS = "bars around a matrix could mean its determinant or its norm; write \\det for the determinant"
+_OF_MATRICES = frozenset("A C D K P Q S W Lambda Phi".split())
+"""Letters of matrices if they are set in bold."""
 _OF_SETS = frozenset(("given", "both", "equal", *words.RELATIONS.values()))
 """Functions of which braces around them make a set."""
 
@@ -27,6 +30,9 @@ class EnclosedCursor(RefusalCursor):
     def _taken(self, base: Node, script: list[Token], at: int) -> Node:
         """Return an expression evaluated at the point that is written below a bar."""
         places = self._condition(script, at)
+        letter = self._letter_of(places)
+        if letter is not None and letter.base.isupper() and not (letter.index or letter.marks):
+            raise Unread("this letter could denote a frame, a set or the point where the expression is taken", at)
         if isinstance(places, Mul) and all(isinstance(one, Sym) and one.name[-1:].isdigit() for one in places.factors):
             raise Unread("this space could separate two entries or two factors", at)
         return Call("value", (base, *listed(places)))
@@ -38,14 +44,18 @@ class EnclosedCursor(RefusalCursor):
         found: list[Node] = []
         for piece in split(part, lambda t: t.is_sign(",;")):
             line = relation_in(piece)
+            for side in () if line.bare else line.sides:
+                refuse_unit(side)
             sides = [self._inner(side, at) for side in line.sides]
             steps: list[Node] = [
                 Call("equal" if sign == "=" else sign, pair)
                 for sign, pair in zip(line.signs, pairwise(sides), strict=True)
             ]
             found.append(sides[0] if line.bare else steps[0] if len(steps) == 1 else Call("both", tuple(steps)))
-            if line.signs == ["element"] and all(isinstance(one, Sym) for one in found[:-1]) and found[:-1]:
-                found = [Call("element", (Call("list", (*found[:-1], sides[0])), sides[1]))]  # x, u in a set
+            if line.signs == ["element"]:
+                begin = max((k + 1 for k, one in enumerate(found[:-1]) if not isinstance(one, Sym)), default=0)
+                if members := found[begin:-1]:  # x, u in a set
+                    found[begin:] = [Call("element", (Call("list", (*members, sides[0])), sides[1]))]
         return found[0] if len(found) == 1 else Call("list", tuple(found))
 
     def _is_transform(self, base: Node) -> bool:
@@ -125,6 +135,9 @@ class EnclosedCursor(RefusalCursor):
         inside = self._found[begin + 1 : self._bracket_end()]
         if not inside:
             raise Unread("the brackets are empty", self._found[begin].at)
+        if any(t.text == "quad" for t in inside):  # the entries of a row
+            self._i = begin
+            return (self._bracket(),)
         return listed(self._condition(inside, self._found[begin].at))
 
     def _upright(self, token: Token) -> Node | None:
@@ -167,7 +180,9 @@ class EnclosedCursor(RefusalCursor):
         while numeric and (token := self._peek()) is not END:
             if token.is_macro(words.UPRIGHT):
                 self._i += 1
-                said += "".join(t.text for t in self._group())
+                group = self._group()
+                ends = [0, *(t.at + len(t.text) for t in group)]
+                said += "".join(" " * (0 < end < t.at) + t.text for end, t in zip(ends, group, strict=False))
             elif said and (token.is_sign("^/") or token.is_macro("cdot")):
                 said += {"cdot": " "}.get(token.text, token.text)
                 self._i += 1
@@ -182,6 +197,7 @@ class EnclosedCursor(RefusalCursor):
 
     def _braces(self, token: Token) -> Node:
         """Read the contents of braces, or of angle brackets, which denote a mean or an inner product."""
+        begin = self._i - 1
         inside = self._braced()
         if (bar := bar_in(inside, colon=True)) >= 0:
             bar_sign = replace(inside[bar], kind="macro", text="mid")
@@ -190,7 +206,8 @@ class EnclosedCursor(RefusalCursor):
         several = listed(found) != (found,) or (isinstance(found, Call) and found.function in _OF_SETS)
         if token.text == "langle":
             return Call("angled", listed(found))
-        return Call("braces", listed(found)) if several else found
+        alone = begin == 0 and self._peek() is END and isinstance(found, Sym)
+        return Call("braces", listed(found)) if several or alone else found
 
     def _cases(self, rows: Sequence[Sequence[Token]], at: int) -> Node:
         """Read values, each with the condition under which it applies."""
@@ -209,6 +226,14 @@ class EnclosedCursor(RefusalCursor):
             found += [self._inner(value, at), conditions[0] if len(conditions) == 1 else Call("list", conditions)]
         return Call("cases", tuple(found))
 
+    def _may_be_matrix(self, node: Node, arrow: bool) -> bool:
+        """Return whether a letter could be a matrix or a set, so that bars around it are not its absolute value."""
+        letter = self._letter_of(node)
+        if letter is None or letter.dots:
+            return False
+        known = letter.style == "cal" or letter.name in self._reading.matrices
+        return known or letter.base in ("J", "Sigma") or (letter.bold and letter.base in _OF_MATRICES and not arrow)
+
     def _size(self, token: Token) -> Node:
         """Read an expression between bars: absolute value, norm or determinant."""
         closing = {"lvert": "rvert", "lVert": "rVert"}.get(token.text, token.text)
@@ -224,16 +249,20 @@ class EnclosedCursor(RefusalCursor):
         self._i += end + 1
         inner = self._inner(rest[:end], token.at)
         single = token.text in ("lvert", "vert") or (token.text == "|" and token.kind != "macro")
+        of = inner.arguments[0] if isinstance(inner, Call) and inner.function == "value" else inner
+        arrow = any(t.is_macro(("vec", "overrightarrow")) for t in rest[:end])
+        if single and (self._may_be_matrix(of, arrow) or (isinstance(of, Call) and of.function == "braces")):
+            raise Unread(_BARS, token.at)
         if (letter := self._letter_of(inner)) and letter.bold and not self._is("_"):
             return self._symbol(replace(letter, style="", marks=(*letter.marks, "norm")), token.at)
         if single and isinstance(inner, Add) and {"I", "lambda"} <= symbols(inner):
             return Call("det", (inner,))
         if single and isinstance(inner, Add) and "I" in symbols(inner):
-            raise Unread(
-                "bars around a matrix could mean its determinant or its norm; write \\det for the determinant", token.at
-            )
+            raise Unread(_BARS, token.at)
         if single and isinstance(inner, Grid):
             return Call("det", (inner,))
+        if not single and self._is("^"):
+            self._index_first()
         if not single and self._accept("_"):
             script = self._script()
             if len(script) > 1 and all(t.kind == "letter" for t in script):

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.cursor import Reading, are_units, bar_in
+from satsym.auditing.latex.cursor import Reading, bar_in, refuse_unit
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.packages import put_in
 from satsym.auditing.latex.parser import Parser
 from satsym.auditing.latex.quotients import are_differentials
+from satsym.auditing.latex.refusals import refuse_doubtful, refuse_repeated_indices
 from satsym.auditing.latex.remarks import without_remarks
 from satsym.auditing.latex.rows import lines, split
 from satsym.auditing.latex.tokens import END, Token, Unread, braced, end_of, group_at
@@ -69,14 +71,16 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
     Unread
         At the first part that does not belong to the grammar.
     """
-    kept = with_names(without_remarks(put_in(found)), names)
+    plain = put_in(found)
+    refuse_doubtful(plain)
+    kept = with_names(without_remarks(plain), names)
     refuse_leading_indices(kept)
     first = Reading([], lenient=True)
     with suppress(Unread):
         _read(kept, first, start)
     known = first.places
     for _ in range(_READINGS):  # what has an argument once, has one everywhere
-        reading = _read(kept, Reading([], known=known, transposing=first.transposing), start)
+        reading = _read(kept, _again(first, known), start)
         if reading.places == known:
             break
         known = reading.places
@@ -87,12 +91,14 @@ def read(found: Sequence[Token], text: str, start: int = 0, names: Collection[st
     return reading
 
 
+def _again(first: Reading, known: dict[str, set[str]]) -> Reading:
+    """Return a new reading, with what was understood in the first one."""
+    return replace(first, statements=[], letters={}, places={}, known=known, lenient=False, constants=False)
+
+
 def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
-    found = lines(kept)
-    for k, line in enumerate(found):
+    for line in lines(kept):
         refuse_spelled_name(line.sides)
-        if k and line.bare and not found[k - 1].bare and are_units(line.sides[0]):
-            raise Unread("this could be a unit or a factor; set units upright", line.sides[0][0].at)
         colon = bar_in(line.sides[0], colon=True) if line.signs == ["tends"] else -1
         if colon > 0 and line.sides[0][colon].text == ":":  # a function between two sets
             parts = [line.sides[0][:colon], line.sides[0][colon + 1 :], line.sides[1]]
@@ -103,8 +109,11 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
         if reading.differential >= 0 and line.bare:
             raise Unread("differentials are not supported", reading.differential)
         reading.statements += sides if line.bare else []
+        if not reading.lenient:
+            refuse_repeated_indices(sides, reading.letters, line.sides[0][0].at)
         for sign, side, (one, other) in zip(line.signs, line.sides[1:], pairwise(sides), strict=True):
-            if sign == "=" and line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2:
+            pair = line.sides[0][0].text == "[" and isinstance(one, Grid) and len(one.entries) == 2
+            if pair and isinstance(one, Grid) and (sign == "=" or all(_is_capital(part) for part in one.entries)):
                 one = Call("bracket", one.entries)
             braces = [side for side in (one, other) if isinstance(side, Call) and side.function == "braces"]
             if sign == "=" and braces and any(isinstance(side, Mul) for side in (one, other)):
@@ -112,9 +121,9 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
                 if reading.lenient and isinstance(function, Sym):  # whose values are sets
                     reading.places.setdefault(function.name, set()).add("")
                     continue
-                raise Unread(
-                    "braces could enclose a set here; write round brackets around a product", line.sides[0][0].at
-                )
+                raise Unread(words.BRACES, line.sides[0][0].at)
+            if sign != "=" and one == other:
+                raise Unread("both sides of this relation are read as the same", side[0].at)
             if Sym("nabla") in (one, other):
                 raise Unread("a nabla on its own is not a quantity", line.sides[0][0].at)
             if reading.differential >= 0 and not (sign == "=" and are_differentials(one, other)):
@@ -126,6 +135,11 @@ def _read(kept: Sequence[Token], reading: Reading, start: int) -> Reading:
                 other = Call("open_interval", other.entries)
             reading.statements.append(Equality(one, other) if sign == "=" else Call(sign, (one, other)))
     return reading
+
+
+def _is_capital(node: Node) -> bool:
+    """Return whether an expression is a capital letter."""
+    return isinstance(node, Sym) and node.name[0].isupper()
 
 
 def _stands_in(name: Node, tree: Node) -> bool:
@@ -184,11 +198,10 @@ def capitals(found: Sequence[Token]) -> list[str]:
 
 def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
     """Refuse adjacent capitals that could be a name or a product, as in ``SO(3)`` or on the left of a definition."""
+    lone = capitals([t for part in line for t in part])
     for part in line:
         refuse_sums_in_capitals(part)
-        unit = [t.kind for t in part] == ["number", "letter"] and part[1].text in UNITS
-        if unit and part[1].at > part[0].at + len(part[0].text) + 1:  # set apart
-            raise Unread("this could be a unit or a factor; set units upright", part[1].at)
+        refuse_unit(part)
         for first, last in _runs(part):
             name, behind = "".join(t.text for t in part[first:last]), part[last : last + 3]
             grouped = sum((t.kind == "open") - (t.kind == "close") for t in part[:first]) > 0
@@ -197,7 +210,9 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             measured = first > 0 and part[first - 1].kind == "number" and name in UNITS
             measured &= not _is_labelled(part, first)
             measured &= not behind or behind[0].text in "/^,;)]" or behind[0].text in RELATIONS
-            if measured or (name in _UNITS and first and part[first - 1].kind in ("number", "close")):
+            prefixed = first > 0 and part[first - 1].kind == "number" and name in UNITS and name[0] in "kMG"
+            measured |= prefixed and name[1].isupper()
+            if measured or (name in _UNITS and first and not _is_labelled(part, first)):
                 raise Unread("this could be a unit or a factor; set units upright", part[first].at)
             spelled = len(name) >= _LONG_WORD and name not in CONSTANT and not grouped
             spelled &= sum(letter in "aeiou" for letter in name) > 1
@@ -209,7 +224,10 @@ def refuse_spelled_name(line: Sequence[Sequence[Token]]) -> None:
             doubtful = called and bool(behind) and behind[0].text in ("(", "_")
             doubtful |= name in _GROUPS and beside <= {"(", ")", ","}
             doubtful |= _is_spelled(part, first, last) or _is_in_series(line, name)
+            plain = name.islower() and len(name) > 2 and not name.endswith((*SPELLED, *CALLED))
+            doubtful |= plain and _holds_one_term(part, last)
             if name.isupper():
+                doubtful |= len(set(name)) == len(name) > 2 and name in lone
                 doubtful |= name != "GM" and _holds_one_term(part, last)
                 doubtful |= len(name) == len(part) and (len(name) > 2 or len(line) > 2)
                 doubtful |= [t.kind for t in behind] == ["sign", "number", "sign"] and behind[0].text == "("
@@ -308,6 +326,8 @@ def refuse_leading_indices(found: Sequence[Token]) -> None:
 
 def _begins(found: Sequence[Token], k: int) -> bool:
     """Return whether the index at a position belongs to the letter after the index."""
+    while k and found[k - 1].is_macro(" "):
+        k -= 1
     token = found[k - 1] if k else Token("macro", "quad", 0)
     if token.kind == "close" and k > 1 and found[k - 2].kind == "open":
         return True

@@ -8,9 +8,11 @@ from dataclasses import dataclass, field, replace
 from satsym.formula.reading import MAX_NAME, NAME
 
 _DOTS = ("", "dot", "ddot", "dddot", "ddddot")
-_ACCENTS = frozenset(("hat", "bar", "tilde", "check", "breve"))
+_ACCENTS = {name: name for name in ("hat", "bar", "tilde", "check", "breve")} | {"under": "underline"}
 _RAISED = {"star": "*", "prime": r"{\prime}", "plus": "+", "minus": "-", "max": r"{\max}", "min": r"{\min}"}
 _STYLES = {"vector": "mathbf", "cal": "mathcal", "tt": "mathtt"}
+_OF_INDICES = re.compile(r"[()\[\]<>.;!?]|/(?![0-9])|\\\\(?:to|[lg]e|in|.*arrow|langle|rangle)(?![a-z])")
+"""Pattern of the signs in an index that its name does not show."""
 GREEK = frozenset(
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho varrho sigma "
     "varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell hbar "
@@ -59,7 +61,7 @@ class Letter:
             found = rf"\{_STYLES[style]}{{{found}}}"
         for mark in self.marks:
             if mark in _ACCENTS:
-                found = rf"\{mark}{{{found}}}"
+                found = rf"\{_ACCENTS[mark]}{{{found}}}"
         if self.dots:
             found = rf"\{_DOTS[self.dots]}{{{found}}}" if len(found) > 1 else rf"\{_DOTS[self.dots]} {found}"
         foot = self.foot or ",".join(_in_tex(part) for part in self.index.split("_") if part)
@@ -81,6 +83,11 @@ class Letter:
     def bold(self) -> bool:
         """Whether the letter is typeset as a vector."""
         return "vector" in self.style
+
+    @property
+    def signs(self) -> str:
+        """Brackets and arrows in the index, which the name does not show."""
+        return "".join(_OF_INDICES.findall(self.foot))
 
     def dotted(self, times: int = 1) -> Letter | None:
         """Return the time derivative of the letter; ``None`` above the fourth order."""

@@ -51,7 +51,10 @@ class OperatorCursor(QuotientCursor):
         for sign, name in (("cdot", "divergence"), ("times", "curl")):
             if self._is(sign, kind="macro"):
                 self._i += 1
-                return Call(name, (self._factor(), *by))
+                of = self._factor()
+                if not self._is_vector(of) and self._begins_factor(self._peek()):
+                    raise Unread("without brackets, it is not clear what is differentiated", self._here)
+                return Call(name, (of, *by))
         if self._peek() is END:
             return Sym("nabla")
         of = self._factor()
@@ -134,7 +137,10 @@ class OperatorCursor(QuotientCursor):
         elif name in OPTIMA and power is None and not self._is("{", kind="macro"):
             return self._optimum(replace(token, text=name))
         elif self._is("{", kind="open") or self._peek() is END:
-            arguments = [self._inner(self._group(), token.at)]
+            group = self._group()
+            if len(split(group, lambda t: t.is_sign("+-"))) > 1 and not group[0].is_sign("+-"):
+                raise Unread("braces around the argument of a function are not printed; write brackets", group[0].at)
+            arguments = [self._inner(group, token.at)]
         elif self._is("{", kind="macro"):
             arguments = [self._factor()]
         else:
@@ -179,7 +185,8 @@ class OperatorCursor(QuotientCursor):
         letter = self._letter_of(vectors) if vectors else None
         if square and letter and letter.bold and not letter.marks and (not self._is("^") or self._is("2", 1, "number")):
             raise Unread("vectors in square brackets are not supported, as they could mean matrices", at)
-        if square and isinstance(inner, Sym) and inner.name.islower() and begin == 0 and self._peek() is END:
+        small = isinstance(inner, Sym) and letter is not None and letter.base.islower() and not letter.bold
+        if square and small and not self._is("_") and not (self._is("^") and self._peek(-2).text == ")"):
             raise Unread("letters in square brackets are not supported, as they could mean dimensions", at)
         if square and (self._stands_behind_a_letter(begin) or self._may_be_a_name(inner)):
             raise Unread("letters in square brackets are not supported, as they could be one name", at)
@@ -207,6 +214,10 @@ class OperatorCursor(QuotientCursor):
         if len(arguments) > 1 and not square and self._is("("):
             listed = Grid(tuple(arguments))
             return Call("value", (listed, *self._arguments()))
+        rows = split(self._found[begin + 1 : self._i - 1], lambda token: token.is_sign(";"))
+        if square and 1 < len(rows) < len(arguments):
+            parts = [split(row, lambda token: token.is_sign(",")) for row in rows]
+            return Grid(tuple(Grid(tuple(self._inner(cell, at) for cell in row)) for row in parts))
         if len(arguments) > 1:
             return Grid((Grid(tuple(arguments)),)) if parted else Grid(tuple(arguments))
         if not arguments:
@@ -258,7 +269,7 @@ class OperatorCursor(QuotientCursor):
         rows = [r for r in split(body, lambda t: t.is_macro(("\\", "cr"))) if r]
         if token.text.endswith("cases"):
             return self._cases(rows, token.at)
-        entries = []
+        entries: list[Grid] = []
         parted = [split(row, lambda t: t.is_sign("&")) for row in rows]
         width = min(map(len, parted), default=1)
         for row, cells in zip(rows, parted, strict=True):
@@ -268,11 +279,14 @@ class OperatorCursor(QuotientCursor):
                 cells = [cell[: len(cell) - (cell[-1:] != [] and cell[-1].text == ",")] for cell in cells]
             if len(cells) == 1:  # a row may be printed with commas
                 cells = split(row, lambda t: t.is_sign(","))
+            across = [parted[k][len(entries) : len(entries) + 1] for k in range(min(len(cells), len(parted)))]
+            if any(not cell and other not in ([], [[]]) for cell, other in zip(cells, across, strict=False)):
+                raise Unread("an empty entry could be zero, or follow from symmetry", token.at)
             entries.append(Grid(tuple(self._inner(cell, token.at) if cell else ZERO for cell in cells)))
         if not entries or len({len(entry.entries) for entry in entries}) > 1:
             raise Unread("all rows of a matrix must have the same length", token.at)
-        if token.text == "vmatrix":
-            return Call("det", (Grid(tuple(entries)),))
+        if token.text in ("vmatrix", "Vmatrix"):
+            return Call("det" if token.text == "vmatrix" else "norm", (Grid(tuple(entries)),))
         return Grid(tuple(entries))
 
     def _raised(self, base: Node, script: list[Token], at: int) -> Node:
@@ -285,10 +299,14 @@ class OperatorCursor(QuotientCursor):
         upright = script[0].text in words.UPRIGHT and "".join(t.text for t in script[1:]) in ("T", "{T}")
         if len(script) == 1 and script[0].text in ("wedge", "times"):
             return Call("skew", (base,))
-        if upright or (script[0].text in words.TRANSPOSED and (len(script) == 1 or script[0].text == "mathsf")):
+        if upright or (script[0].text in words.TRANSPOSED and len(script) == 1):
+            self._note_matrix(base)
             return Call("transpose", (base,))
         if len(script) == 1 and script[0].text in ("dagger", "dag", *words.STARS):
             return Call("raised", (base, Sym("star" if script[0].text in words.STARS else "dagger")))
+        bracketed = script[0].is_sign("[") or script[0].is_macro(words.OPENING)
+        if bracketed and base != Sym("e") and (script[-1].is_sign("]") or script[-1].is_macro(words.CLOSING)):
+            raise Unread("this index is not supported", at)
         exponent = self._inner(script, at)
         value = constant(exponent)
         if value is None and (constant(base) is not None or base == Sym("pi")):
@@ -302,6 +320,8 @@ class OperatorCursor(QuotientCursor):
             if (len(letters) > 1 and all(letters)) or (isinstance(exponent, Call) and exponent.function != "transpose"):
                 raise Unread("exponents of several letters are not supported", at)
             return Call("raised", (base, exponent))
+        if value == -1:
+            self._note_matrix(base)
         if value == 0:
             raise Unread("an exponent of zero could be an index", at)
         if base == Num(Fraction(10)):  # an order of magnitude
@@ -309,6 +329,11 @@ class OperatorCursor(QuotientCursor):
         if abs(value) > MAX_EXPONENT:
             raise Unread(f"exponents above {MAX_EXPONENT} are not supported", at)
         return Pow(base, exponent)
+
+    def _note_matrix(self, base: Node) -> None:
+        """Record that a capital letter is inverted or transposed, as matrices are."""
+        if isinstance(base, Sym) and base.name[0].isupper():
+            self._reading.matrices.add(base.name)
 
     def _of_vectors(self, product: str, left: Node, sign: Token) -> Node:
         r"""Read the product of two vectors; factors may precede the second vector, ``\bm r \times m\bm a``."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from satsym.auditing.latex.letters import GREEK
 from satsym.auditing.latex.tokens import END, Token, braced, end_of, environment, group_at, group_end
-from satsym.auditing.latex.words import RELATIONS, SIGNS, STYLES, UNITS
+from satsym.auditing.latex.words import OPTIMA, RELATIONS, SIGNS, STYLES, UNITS
 
 _OTHER_NAMES = {"cross": "times", "crossproduct": "times", "vdot": "cdot", "dotproduct": "cdot", "bigcdot": "cdot"}
 _OTHER_NAMES |= {"centerdot": "cdot", "grad": "nabla", "vb": "mathbf", "vectorbold": "mathbf", "va": "vec"}
@@ -189,3 +189,26 @@ def _quotient(sign: str, order: list[Token], groups: list[list[Token]], at: int)
     of, by = groups if len(groups) == 2 else ([], groups[0] if groups else [])
     mark = Token("letter" if sign == "d" else "macro", sign, at)
     return [Token("macro", "frac", at), *braced([mark, *order, *of], at), *braced([mark, *by, *order], at)]
+
+
+def underset(found: Sequence[Token], i: int) -> list[Token]:
+    """Return an operator such as min with the text below it as its subscript; empty for other words."""
+    end = group_end(found, i)
+    if end >= len(found) or found[i].kind != "open":
+        return []
+    above = found[end : group_end(found, end)]
+    word = "".join(t.text for t in above if t.kind == "letter" or t.text in OPTIMA)
+    if word.removeprefix("operatorname") not in OPTIMA:
+        return []
+    at = found[i].at
+    return [Token("macro", word, at), Token("sign", "_", at), *found[i:end]]
+
+
+def height(found: Sequence[Token], i: int) -> int:
+    """Return the position after the line height in brackets that follows a line break; 0 if there is none."""
+    if i >= len(found) or found[i].text != "[":
+        return 0
+    end = next((k for k in range(i, min(i + 8, len(found))) if found[k].text == "]"), i)
+    inside = [t for t in found[i + 1 : end] if t.text != "-"]
+    unit = "".join(t.text for t in inside[1:])
+    return end + 1 if inside and inside[0].kind == "number" and unit in ("em", "ex", "pt", "mm", "cm") else 0

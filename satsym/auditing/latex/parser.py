@@ -25,9 +25,7 @@ class Parser(SumCursor):
     def side(self) -> Node:
         """Read the whole side, which may be a list."""
         parts = split(self._found, lambda token: token.is_sign(","))
-        if len(parts) < 2:
-            return self.whole()
-        return Call("list", tuple(self._inner(part, self._start) for part in parts))
+        return self.whole() if len(parts) < 2 else Call("list", tuple(self._inner(part, self._start) for part in parts))
 
     def whole(self) -> Node:
         """Read the whole side as one expression."""
@@ -80,6 +78,8 @@ class Parser(SumCursor):
                 chain.append(self._factor())
             else:
                 break
+        if len(chain) > 1 and any(isinstance(one, Call) and one.function == "braces" for one in chain):
+            raise Unread(words.BRACES, self._found[self._i - 1].at)
         return product_of(chain)
 
     def _encloses_one(self) -> bool:
@@ -102,6 +102,8 @@ class Parser(SumCursor):
         """Read the right operand of a multiplication sign into a product, and return the last vector product."""
         self._i += 1
         before, product = chain[-1], words.OF_VECTORS.get(sign.text)
+        if isinstance(before, Grid) and isinstance(before.entries[0], Grid) and len(before.entries[0].entries) > 1:
+            product = product if product == "cross" else None  # matrices are multiplied
         last = self._peek(-2)
         if product and self._is_vector(before):
             field = isinstance(before, Call) and before.function in ("curl", "divergence")
@@ -114,7 +116,9 @@ class Parser(SumCursor):
             raise Unread("a nabla on its own is not a quantity", sign.at)
         numbers = any(constant(side) is not None for side in (before, chain[-1]))
         convolved = last.text == self._found[self._i - 1].text == ")"  # of x(t) and y(t)
-        convolved |= any(letter and letter.base == "q" for letter in map(self._letter_of, (before, chain[-1])))
+        letters = [self._letter_of(factor) for factor in (before, chain[-1])]
+        convolved |= any(letter and letter.base == "q" for letter in letters)
+        convolved |= all(letter and letter.base in "fgh" for letter in letters)
         if (sign.text in ("ast", "odot", "bullet") or (sign.text == "*" and convolved)) and not numbers:
             raise Unread("this sign could be a convolution or another product; write \\cdot for a product", sign.at)
         scalar = crossed == "number" or any(constant(side) is not None for side in (before, chain[-1]))
@@ -246,8 +250,10 @@ class Parser(SumCursor):
                 return base
 
     def _indices_of(self, script: Sequence[Token], at: int) -> Node:
-        """Read the index of a bracket, which is one expression or several, e.g. those of a matrix entry."""
+        """Read the index of a bracket: one expression, a word, or several ones, e.g. those of a matrix entry."""
         letters = all(t.kind == "letter" for t in script)
+        if letters and len(script) > 2 and not all(t.text in words.COUNTERS for t in script):
+            return Sym("".join(t.text for t in script))
         parts = [[t] for t in script] if letters else split(script, lambda t: t.is_sign(","))
         indices = [self._inner(part, at) for part in parts]
         if any(isinstance(index, Mul) for index in indices):
@@ -372,7 +378,8 @@ class Parser(SumCursor):
         if name in words.UPRIGHT and len(letter.base) > 1 and letter.base in words.UNITS:
             raise Unread("units in formulas are not supported", token.at)
         timed = self._is("t", 1, "letter") and self._is(")", 2)
-        if name in words.UPRIGHT and len(letter.base) > 1 and self._is("(") and not timed:
+        applied = (self._is("(") and not timed) or self._is("[") or after.is_macro(("{", "lbrace"))
+        if name in words.UPRIGHT and len(letter.base) > 1 and applied:
             raise Unread(f"unknown function {printable(letter.base)}", token.at)
         return self._symbol(letter, token.at)
 

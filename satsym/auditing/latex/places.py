@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
-from satsym.auditing.latex.arguments import may_be_argument, may_be_squared
+from satsym.auditing.latex.arguments import is_lapse, is_step, may_be_argument, may_be_squared
 from satsym.auditing.latex.cursor import bar_in, listed
 from satsym.auditing.latex.letters import GREEK, Letter, is_name
 from satsym.auditing.latex.printed import LetterCursor
 from satsym.auditing.latex.rows import relation_in, split
-from satsym.auditing.latex.tokens import Token, Unread, has_bold
+from satsym.auditing.latex.tokens import END, Token, Unread, has_bold
 from satsym.auditing.latex.words import (
     ARGUED,
     ARGUMENT_OR_FACTOR,
@@ -31,8 +31,8 @@ from satsym.formula.tree import Call, Node, Pow, Sym, constant, symbols
 _ORDERS = (Letter("O"), Letter("O", style="cal"))
 """Letters that denote an order of magnitude."""
 
-_OF_INDICES = re.compile(r"[()\[\]<>.;!?]|\\\\(?:to|[lg]e|in|.*arrow|langle|rangle)(?![a-z])")
-"""Pattern of the signs in an index that its name does not show."""
+_OF_EVENTS = frozenset("P p E I H V".split())
+"""Letters of functions of an event or a condition, such as a probability."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class PlaceCursor(LetterCursor):
             return order
         places = self._taken_at(letter)
         known = self._reading.letters.setdefault(name, letter)
-        if _foot(known) != _foot(letter) and not self._reading.lenient:
+        if (known != letter or known.signs != letter.signs) and not self._reading.lenient:
             raise Unread("two letters differ only in the signs of their indices; give them other indices", at)
         return Call("value", (Sym(name), *places)) if places else Sym(name)
 
@@ -91,7 +91,7 @@ class PlaceCursor(LetterCursor):
         """Read the argument of the symbol of Landau; ``None``, with nothing read, if O could be a letter here."""
         begin = self._i
         inside = self._found[begin + 1 : self._bracket_end()]
-        if letter.style or any(t.text == "^" for t in inside):
+        if letter.style or len(inside) == 1 or any(t.text == "^" for t in inside):
             return Call("order", (self._inner(inside, self._found[begin].at),))
         self._i = begin
         return None
@@ -111,7 +111,9 @@ class PlaceCursor(LetterCursor):
         if not inside:
             raise Unread("the brackets are empty", self._found[begin].at)
         words = "".join(t.text for t in inside if t.kind not in ("open", "close"))
-        timed = words == "t" or (words == "tau" and letter.name not in self._reading.known)
+        apart = letter.name in self._reading.timed and words not in self._reading.integrated
+        timed = words == "t" or (words == "tau" and letter.name not in self._reading.known and not apart)
+        self._reading.timed |= {letter.name} if words == "t" else set()
         if timed or words in (".", "cdot"):
             return ()
         bracket = self._contents(letter, inside, words)
@@ -141,6 +143,7 @@ class PlaceCursor(LetterCursor):
             words in AT_A_TIME
             or (bool(primed) and bool(bare))
             or (len(places) == 1 and bool(bare) and bool(bare[0].index))
+            or all(at is not None and at.index == "0" for at in letters)
         )
         return _Bracket(inside, words, places, letters, bare, fixed)
 
@@ -151,35 +154,51 @@ class PlaceCursor(LetterCursor):
             base and base.base.isupper() if letter.bold and letter.base.isupper() else _is_scalar(letter)
         )
         matrices = base and base.bold and factor
-        crossed = self._is("^") and [t.text for t in self._peek_group()] in (["times"], ["wedge"])
-        inverse = self._is("^") and [t.text for t in self._peek_group()] == ["-", "1"]
-        squared = self._is("^") and all(t.kind == "number" for t in self._peek_group()) and len(bracket.places) == 1
+        power, single = self._peek_group() if self._is("^") else [], len(bracket.places) == 1
+        raised = [t.text for t in power]
+        squared = bool(power) and all(t.kind == "number" for t in power) and single
         if squared and base and letter.name not in self._reading.known and may_be_squared(letter, base):
             if base.before:
                 return True
             raise Unread(ARGUMENT_OR_FACTOR, bracket.inside[0].at - 1)
-        if inverse and base and base.base.isupper() and letter.base.isupper() and not letter.bold:
+        capitals = base and base.base.isupper() and letter.base.isupper() and not letter.bold
+        turned = raised in (["T"], ["top"]) and single and _is_scalar(letter) and letter.base not in "gh"
+        if (raised == ["-", "1"] and capitals) or (turned and self._is_taken(bracket.inside)):
             raise Unread(ARGUMENT_OR_FACTOR, bracket.inside[0].at - 1)
-        return crossed or bool(matrices and len(bracket.places) == 1 and self._is("^"))
+        factor = bool(matrices and single and power)
+        if not (factor and letter.bold and letter.base.islower() and base != letter):
+            return factor or raised in (["times"], ["wedge"])
+        if letter.name not in self._reading.known:
+            self._refuse_argument(bracket.inside[0].at - 1)
+        return self._reading.lenient
 
     def _is_surely_taken(self, letter: Letter, bracket: _Bracket) -> bool:
         """Return whether the bracket behind a letter contains arguments, without any doubt."""
         inside = bracket.inside
         number = len(inside) == 1 and inside[0].kind == "number"
         number |= inside[-1].text == "infty" and len(inside) < 3
-        known = self._reading.known.get(letter.name, set())
-        lapse = letter.base in LAPSED | {"delta", "H", "g", "h", "G"} and _is_lapse(inside)
+        known = self._known(letter)
+        lapse = letter.base in LAPSED | {"delta", "H", "g", "h", "G"} and is_lapse(inside)
         varied = [inside[k + 1].text for k, t in enumerate(inside[:-1]) if t.text in ("delta", "Delta", "d")]
         lapse |= inside[0].text in varied and len(inside) > 3 and inside[1].text in "+-"  # t + Delta t
         lapse |= letter.base in "VJ" and {"x", "u"} <= {t.text for t in inside}  # the value at the next state
         argued = letter in map(Letter, ARGUED) and self._is_product(inside)
         related = _is_related(inside)
+        if related and bar_in(inside) < 0 and letter.base not in _OF_EVENTS and not self._states_place(inside):
+            raise Unread("relations inside brackets or arguments are not supported", inside[0].at)
         barred = inside[0].text in ("|", "lvert", "lVert") and inside[-1].text in ("|", "rvert", "rVert")
         imaginary = letter.base.isupper() and inside[0].text in "ij" and [t.text for t in inside[1:2]] == ["omega"]
         stated = bool(len(bracket.places) > 1 or bracket.bare or bracket.fixed or number or known or lapse or argued)
         sure = stated or self._is_taken(inside)
-        counted = inside[0].text in COUNTERS and any(said[0] == inside[0].text for said in self._all_known() if said)
-        return sure or related or imaginary or barred or (counted and _is_step(inside))
+        heads = {said[:1] for places in self._reading.known.values() for said in places}
+        counted = inside[0].text in COUNTERS & heads
+        return sure or related or imaginary or barred or (counted and is_step(inside))
+
+    def _states_place(self, inside: Sequence[Token]) -> bool:
+        """Return whether the bracket that was read states a place, as in x(t = 0), not a condition set apart."""
+        before, opening = self._peek(-len(inside) - 3), self._peek(-len(inside) - 2)
+        gap = opening.at - before.at - len(before.text) - (before.kind == "macro")
+        return relation_in(inside).signs == ["="] and gap in (0, len(r"\left"))
 
     def _may_be_taken(self, letter: Letter, inside: list[Token]) -> bool:
         """Return whether the bracket behind a letter could contain an argument, though it reads as a factor."""
@@ -189,7 +208,7 @@ class PlaceCursor(LetterCursor):
         turned |= letter.base == "R" and angles and inside[0].text in GREEK
         taken = self._is_product(inside) and not self._is_factor(letter, inside)
         taken &= not (_is_scalar(letter) and self._is("^") and letter not in map(Letter, ARGUED))
-        taken |= inside[-1].text != "T" and self._is_power(inside) and len(letter.base) + len(letter.marks) > 1
+        taken |= inside[-1].text != "T" and self._is_power(inside)
         transformed = letter.base.isupper() and {"s"} in self._reading.known.values()
         taken |= transformed and "s" in {t.text for t in inside} and "+" in {t.text for t in inside}
         order = letter == Letter(letter.base) and letter.base in "oO"  # the symbol of Landau
@@ -200,17 +219,18 @@ class PlaceCursor(LetterCursor):
         step &= not any(t.text == "(" for t in inside)
         listed = inside[0].is_macro(("{", "lbrace")) and inside[-1].is_macro(("}", "rbrace"))
         vector = letter.bold and not letter.index[:1].isdigit()  # r(t - T), not v_0(t - t_0)
-        delayed = (vector or letter in map(Letter, "der")) and _is_lapse(inside)
+        delayed = (vector or letter in map(Letter, "der")) and is_lapse(inside)
         delayed |= vector and len(inside) == 3 and inside[0].text in "tk" and inside[1].is_sign("+-")
         return turned or taken or order or transposed or step or divided or listed or delayed
 
     def _read_from(self, letter: Letter, bracket: _Bracket, at: int) -> tuple[Node, ...]:
         """Read the arguments in a bracket, and record that the letter is printed with them."""
         inside, bare, fixed = bracket.inside, bracket.bare, bracket.fixed
-        known, related = self._reading.known.get(letter.name, set()), _is_related(inside)
-        plain = len(bare) == len(bracket.letters) and not fixed
+        known, related = self._known(letter), _is_related(inside)
+        plain = letter != Letter("N", style="cal") and len(bare) == len(bracket.letters) and not fixed
         said = bracket.words if not plain or related else ",".join(at.name for at in bare)
         self._reading.places.setdefault(letter.name, set()).add(said)
+        plain &= letter.name not in self._reading.timed or said in self._reading.integrated or len(bare) > 1
         if plain and known <= {said}:
             return ()
         if related:
@@ -249,6 +269,9 @@ class PlaceCursor(LetterCursor):
         raised = isinstance(base, Call) and base.function == "raised"
         if raised and symbols(base) & FIELDS and any(t.text in "+-" for t in inside):
             raise Unread(ARGUMENT_OR_FACTOR, self._found[begin].at)
+        transposed = self._is("^") and [t.text for t in self._peek_group()] in (["T"], ["top"])
+        if inverse and transposed and len(places) > 1:
+            raise Unread(ARGUMENT_OR_FACTOR, self._found[begin].at)
         if (raised and timed) or ((raised or inverse) and all(map(self._place, places))):
             return Call("value", (base, *(self._inner(place, self._found[begin].at) for place in places)))
         if timed or self._place(inside) is not None or self._is_taken(inside):
@@ -278,9 +301,11 @@ class PlaceCursor(LetterCursor):
         unclear = letter is None or letter.base in FIELDS or letter.base in ("delta", "T", *ARGUED)
         return None if unclear or exponent is None or exponent < 2 else letter
 
-    def _all_known(self) -> set[str]:
-        """Return the arguments with which the letters of the formula are printed."""
-        return set[str]().union(*self._reading.known.values())
+    def _known(self, letter: Letter) -> set[str]:
+        """Return the arguments with which a letter is printed anywhere, and a letter with primes also without them."""
+        unprimed = replace(letter, marks=tuple(mark for mark in letter.marks if not mark.startswith("prime")))
+        known = self._reading.known
+        return known.get(letter.name, set()) | known.get(unprimed.name, set())
 
     def _refuse_argument(self, at: int) -> None:
         """Refuse a bracket of which it is not sure whether it is an argument, unless a second reading follows."""
@@ -348,18 +373,16 @@ class PlaceCursor(LetterCursor):
 
     def _is_product(self, part: Sequence[Token]) -> bool:
         """Return whether the tokens are adjacent letters; in brackets after a letter such a product is an argument."""
-        if len(part) < 2 or any((t.text in "+-*/" and t.kind == "sign") or t.text in DOUBLE_SIGNS for t in part):
+        depths = accumulate(token.group for token in part)
+        level = zip(part, (END, *part), depths, strict=False)
+        outer = [token for token, before, depth in level if not depth and before.text != "^"]
+        if len(part) < 2 or any(t.is_sign("+-*/") or t.text in DOUBLE_SIGNS for t in outer):
             return False
         inner = self._of(part)
         first = inner._letter()
         while first is not None and inner._is("^"):
             inner._i = inner._script_end()
         return first is not None and (inner._peek().kind in ("letter", "macro") or inner._is("("))
-
-
-def _foot(letter: Letter) -> str:
-    """Return the brackets and arrows in the index of a letter, which its name does not show."""
-    return "".join(_OF_INDICES.findall(letter.foot))
 
 
 def _is_scalar(letter: Letter) -> bool:
@@ -370,15 +393,3 @@ def _is_scalar(letter: Letter) -> bool:
 def _is_related(part: Sequence[Token]) -> bool:
     """Return whether the tokens contain a relation or a condition."""
     return bar_in(part) >= 0 or not relation_in(part).bare
-
-
-def _is_step(part: Sequence[Token]) -> bool:
-    """Return whether the tokens are a letter with a number or counter added or subtracted, like a later step."""
-    counts = len(part) == 3 and (part[2].kind == "number" or part[2].text in COUNTERS)
-    return counts and part[0].kind == "letter" and part[1].text in ("+", "-")
-
-
-def _is_lapse(part: Sequence[Token]) -> bool:
-    """Return whether the tokens are a difference of two times."""
-    named = [t.text for k, t in enumerate(part) if t.kind in ("letter", "macro") and part[k - 1].text not in "_{"]
-    return len(named) == 2 and set(named) <= {"t", "tau", "s", "T"} and "-" in {t.text for t in part}

@@ -52,6 +52,8 @@ class QuotientCursor(PlaceCursor):
                 raise Unread("a derivative of this order is not supported", sign.at)
             times = int(digits)
         what = self._factor()
+        if isinstance(what, Sym) and self._peek().kind == "letter":
+            raise Unread("without brackets, it is not clear what is differentiated", self._here)
         for _ in range(times):
             what = Call("diff", (what, self._symbol_of(by, [sign])))
         return what

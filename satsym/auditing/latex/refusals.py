@@ -2,19 +2,90 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from satsym.auditing.latex import words
-from satsym.auditing.latex.letters import GREEK
+from satsym.auditing.latex.letters import GREEK, Letter
 from satsym.auditing.latex.operators import OperatorCursor, product_of
 from satsym.auditing.latex.quotients import is_differential
 from satsym.auditing.latex.tokens import Token, Unread
-from satsym.auditing.latex.words import ACCENTS, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
-from satsym.formula.tree import Call, Node, Num, Pow, Sym, children, constant
+from satsym.auditing.latex.words import ACCENTS, ARGUMENT_OR_FACTOR, FIELDS, FREQUENCIES, FUNCTIONS, MARKS, OPERATORS
+from satsym.formula.tree import Call, Mul, Node, Num, Pow, Sym, children, constant, walk
 from satsym.wording import printable
+
+_LETTER = rf"(?:[A-Za-z]|\\(?:{'|'.join(sorted(GREEK))}))"
+_UPRIGHT = r"\\(?:text|textrm|mathrm|mbox|rm)"
+_FREE = r"(?:(?<= )|\A)(?<![_^] )(?<![_^] { )"
+"""Pattern of the place in front of a symbol that is no index or power."""
+_NUMBER = r"[0-9][0-9.]*"
+_DOUBTS = tuple(
+    (re.compile(pattern), why)
+    for pattern, why in (
+        (
+            rf"{_FREE}[12]0 (?:\\cdot )?(?P<at>\\log)(?! _)",
+            "this logarithm could have the base 10; write \\log_{10} or \\ln",
+        ),
+        (r"! (?P<at>!)", "a double factorial is not supported"),
+        (rf"{_FREE}1 (?P<at>\() (?![-0-9])", ARGUMENT_OR_FACTOR),
+        (rf"{_FREE}o (?P<at>\() ", ARGUMENT_OR_FACTOR),
+        (
+            rf"{_FREE}[0-9]+ (?P<at>\\[dt]?frac) (?:{{ [0-9]+ }} {{ [0-9]+ }}|[0-9][0-9])(?= |\Z)",
+            "this could be a mixed number or a product; write \\cdot for a product",
+        ),
+        (
+            rf"(?P<at>\\delta|\\Delta) \^ (?:2|{{ 2 }}) {_LETTER}(?= |\Z)",
+            "this could be a power of a letter or a second variation or difference",
+        ),
+        (
+            rf"{_NUMBER} (?P<at>{_UPRIGHT}) (?:{{ )?[eE] (?:}} )?[-+]? ?[0-9]",
+            "this notation for a power of ten is not supported; write \\cdot 10^{...}",
+        ),
+        (
+            r"(?P<at>\\binom) { (?![a-zN0-9] (?:[-+] [a-zN0-9] )*} )",
+            "this could be a binomial coefficient or a column; write an environment for the column",
+        ),
+        (r"_ { (?P<at>[,;]) ", "this index is not supported"),
+        (
+            r"(?:= |\A)(?P<at>\(|\[|\\{) [A-Za-z] _ { [a-z] (?:, )?[a-z] } (?:\)|\]|\\})(?= [=,.]|\Z)",
+            "a bracket around one entry could denote the whole matrix",
+        ),
+        (
+            r"begin:array { [lcr] (?P<at>\|) [lcr] } [A-Z] (?:_ \w )?& [A-Z] [^&]*\\hline [A-Z] (?:_ \w )?& ",
+            "lines in a matrix could denote a system instead of a matrix",
+        ),
+        (
+            rf"{_NUMBER} (?P<at>\\[dt]?frac) {{ k?(?: )?m }} {{ s (?:\^ (?:2|{{ 2 }}) )?}}",
+            "this could be a unit or a factor; set units upright",
+        ),
+        (rf"{_FREE}[aA] (?P<at>d) _ (?:{{ )?[A-Za-z]", "ad could be one name, \\mathrm{ad}, or a product"),
+        (
+            rf"(?P<at>\\mathbb) (?:{{ )?[EP] (?:}} )?{_LETTER}(?= |\Z)",
+            "this could be an operator that is applied to a function, or a product",
+        ),
+        (
+            rf"{_FREE}(?P<at>D) (?:_ (?:{{ )?[xtquyz]|\^ [0-9] {_LETTER})",
+            "this could be an operator that is applied to a function, or a product",
+        ),
+        (rf"{_FREE}[0-9]+ (?P<at>:) [0-9]", "this colon could be a ratio or a range; write a fraction or an interval"),
+        (r"(?:overset|stackrel) { (?P<at>\?) ", "a relation with a question mark is not supported"),
+    )
+)
+"""Patterns of the symbols of a formula, parted by spaces -> the reason why they are refused."""
+
+
+_PARTS = frozenset((",", ";", "&", "\\\\", "\\quad", "\\qquad", "\\,", "\\;", "\\ "))
+"""Symbols behind which an equation begins."""
+_OF_COMPONENTS = re.compile(r"[ijlkab]*[ij][ijlkab]*")
+"""Pattern of indices that number the components of vectors and tensors."""
+
+
+_BOUND = frozenset("sum product integral cross times dot".split())
+"""Functions that sum over their indices themselves, and products of vectors that are numbered."""
 
 
 class RefusalCursor(OperatorCursor):
@@ -67,7 +138,7 @@ class RefusalCursor(OperatorCursor):
             if power.kind == "number" and power.at <= token.at + 2:
                 raise Unread("this notation for a power of ten is not supported; write \\cdot 10^{...}", token.at)
         said = "".join(t.text for t in self._found[self._i : self._i + 4])
-        if isinstance(last, Num) and last.value.denominator > 1 and said.startswith(("m/s", "km/s", "rad/", "kg/")):
+        if isinstance(last, Num) and said.startswith(("m/s", "km/s", "rad/", "kg/")):
             raise Unread("this could be a unit or a product of letters; set units upright", token.at)
         raised = isinstance(last, Pow) or (isinstance(last, Call) and last.function == "power")
         if token.text in words.UNITS and raised and children(last)[0] == Num(Fraction(10)):
@@ -143,3 +214,55 @@ class RefusalCursor(OperatorCursor):
             raise Unread("words inside a formula are not supported", at)
         if (word in words.UNKNOWN or macro == "operatorname") and word not in FUNCTIONS and taken:
             raise Unread(f"unknown function {printable(word)}", at)
+
+
+def refuse_doubtful(found: Sequence[Token]) -> None:
+    """Refuse symbols that are read in two ways, at the first place where they occur."""
+    said = [("\\" if t.kind == "macro" else "begin:" if t.kind == "begin" else "") + t.text for t in found]
+    begins = [0, *accumulate(len(one) + 1 for one in said)]
+    text = " ".join(said)
+    doubts = [(match.start("at"), why) for pattern, why in _DOUBTS if (match := pattern.search(text))]
+    if doubts:
+        place, why = min(doubts)
+        raise Unread(why, found[begins.index(place)].at)
+    for k in range(len(said) - 4):
+        if said[k + 1 : k + 5] == ["{", "o", "r", "}"] and "=" in said[:k] and "=" in said[k:]:
+            one, other = _left(said[:k]), _left(said[k + 5 : said.index("=", k) + 1])
+            if one == other:
+                raise Unread("alternatives are not supported", found[k].at)
+
+
+def _left(part: list[str]) -> list[str]:
+    """Return what stands on the left of the last equality sign of some symbols."""
+    end = len(part) - 1 - part[::-1].index("=")
+    begin = max((k + 1 for k in range(end) if part[k] in _PARTS), default=0)
+    return part[begin:end]
+
+
+def refuse_repeated_indices(sides: Sequence[Node], letters: Mapping[str, Letter], at: int) -> None:
+    """Refuse an index that occurs twice in a product and nowhere else, as where a sum over it is not printed."""
+    parts = [part for side in sides for _, part in walk(side)]
+    if any(isinstance(part, Call) and part.function in _BOUND for part in parts):
+        return
+    found = Counter(index for part in parts for index in _indices(part, letters))
+    for product in (part for part in parts if isinstance(part, Mul)):
+        factors = [_inmost(factor) for factor in product.factors]
+        inside = Counter(index for factor in factors for index in _indices(factor, letters))
+        if any(1 < count == found[index] for index, count in inside.items()):
+            raise Unread("an index that is repeated in a product could denote a sum; write \\sum", at)
+
+
+def _inmost(factor: Node) -> Node:
+    """Return what is differentiated, transposed or taken somewhere in a factor."""
+    while isinstance(factor, Call) and factor.function in ("d", "value", "transpose", "differential"):
+        factor = factor.arguments[0]
+    return factor
+
+
+def _indices(part: Node, letters: Mapping[str, Letter]) -> str:
+    """Return the letters of indices that number components, below or above a letter."""
+    letter = letters.get(part.name) if isinstance(part, Sym) else None
+    if letter is not None and _OF_COMPONENTS.fullmatch(letter.index):
+        return letter.index
+    above = part.arguments[1] if isinstance(part, Call) and part.function == "raised" else None
+    return above.name if isinstance(above, Sym) and _OF_COMPONENTS.fullmatch(above.name) else ""

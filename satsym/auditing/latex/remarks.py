@@ -8,22 +8,25 @@ from itertools import pairwise
 
 from satsym.auditing.latex import words
 from satsym.auditing.latex.letters import GREEK
+from satsym.auditing.latex.packages import height, underset
 from satsym.auditing.latex.tokens import END, Token, group_at, group_end
-from satsym.auditing.latex.words import CONNECTIVES, OPTIMA, RELATIONS, SAID, SHORT_WORDS, SIGNS, SPACES, UNITS, UPRIGHT
+from satsym.auditing.latex.words import CONNECTIVES, RELATIONS, SAID, SHORT_WORDS, SIGNS, SPACES, UNITS, UPRIGHT
 
 _BRACKETS = {"lbrack": "[", "rbrack": "]", "lparen": "(", "rparen": ")"}
 _LINED = ("boxed", "fbox", "underline", "overline")
 """Macros that draw a line or frame at a whole relation."""
 _OVER = ("overset", "stackrel", "underset")
 """Macros that set a text above or below a sign."""
+REMARK = "remark"
+"""Name of the macro that replaces words between formulas."""
+_DENIALS = frozenset("not unless nor except without instead never tidak bukan kecuali".split())
+"""Words that change what the formulas beside them state."""
 _ITALIC = frozenset(("for", "where", "with", "when", "and", "if", "s.t.", "s.t"))
 """Words that are recognised between formulas although they are set as letters."""
 _LONGEST_WORD = max(map(len, _ITALIC))
 """Number of characters of the longest word that is recognised although it is set as letters."""
 _NARROW = (";", ":", ">", "~", "medspace", "thickspace")
 """Spaces that are too narrow to separate formulas."""
-REMARK = "remark"
-"""Name of the macro that replaces words between formulas."""
 _JOINED = {("|", "|"): "|", ("<", "<"): "ll", (">", ">"): "gg", (":", "="): "coloneq", ("=", ":"): "equiv"}
 _JOINED |= {("<", "="): "le", (">", "="): "ge", ("=", ">"): REMARK}
 """Pairs of signs that are printed in place of one sign."""
@@ -82,12 +85,12 @@ class _Removal:
             self.i += 1
         elif token.is_macro("textcolor") and first.kind == "open":
             self.i = group_end(found, i)
-        elif token.is_macro("underset") and (under := _underset(found, i)):
+        elif token.is_macro("underset") and (under := underset(found, i)):
             self._replaced(under, group_end(found, group_end(found, i)))
         elif token.is_macro("mathop") and [t.text for t in found[i : i + 2]] == ["{", "mathrm"]:
             end = group_end(found, i)
             self._replaced([replace(token, text="operatorname"), *found[i + 2 : end - 1]], end)
-        elif token.is_macro("\\") and (end := _height(found, i)):
+        elif token.is_macro("\\") and (end := height(found, i)):
             self.kept.append(token)
             self.i = end
         elif token.is_macro(_OVER) and (relation := _relation_under(found, i)):
@@ -102,7 +105,7 @@ class _Removal:
         if token.text == "&" and kept and kept[-1].text == ":" and self._next.text == "=":
             kept[-1] = Token("macro", "coloneq", kept[-1].at)
             self.i += 1
-        elif (end := _italic_word(found, i - 1)) and not self.depth and _stands_apart(found, i - 2):
+        elif (end := _italic_word(found, i - 1)) and not self.depth and _standsapart(found, i - 2):
             kept.append(Token("macro", REMARK, token.at))
             self.i = end
         elif token.is_macro(_BRACKETS):
@@ -166,9 +169,9 @@ class _Removal:
     def _words(self, token: Token) -> bool:
         """Read words between formulas, or a sign that stands for such words."""
         found, i, kept = self.found, self.i, self.kept
-        if token.is_macro(UPRIGHT) and _has_formula(found, i, kept):
-            self._replaced(_apart(found, i), group_end(found, i))
-        elif token.is_macro(UPRIGHT) and _is_spoken(found, i, self.depth, kept):
+        if token.is_macro(UPRIGHT) and has_formula(found, i, kept):
+            self._replaced(apart(found, i), group_end(found, i))
+        elif token.is_macro(UPRIGHT) and is_spoken(found, i, self.depth, kept):
             self.i = group_end(found, i)
             if self.depth and self.i < len(found) and found[self.i].text == ")":  # the bracket is one of the words
                 kept.pop()
@@ -212,7 +215,9 @@ def _behind_variable(found: Sequence[Token], i: int) -> int:
     k = i + 1
     while k + 1 < len(found) and found[k].text in ("_", "^"):
         k = group_end(found, k + 1) if found[k + 1].kind == "open" else k + 2
-    space = k < len(found) and (found[k].text in ("~", "quad", "qquad", ":", ",") or found[k].text in SPACES)
+    space = k >= len(found) or found[k].text in ("~", "quad", "qquad", ":", ",") or found[k].text in SPACES
+    if [t.text for t in found[k : k + 3 : 2]] in ([",", ","], [",", "in"], [",", "_"], [",", "&"]):
+        return i  # a list of letters
     return k + 1 if space and (found[i].kind == "letter" or found[i].text in GREEK) else i
 
 
@@ -257,7 +262,7 @@ def _italic_word(found: Sequence[Token], i: int) -> int:
     return 0
 
 
-def _stands_apart(found: Sequence[Token], i: int) -> bool:
+def _standsapart(found: Sequence[Token], i: int) -> bool:
     """Return whether the token at a position is no part of a product with the one after it."""
     return i < 0 or found[i].text in (",", "&", "~", "\\", "quad", "qquad", *SPACES)
 
@@ -309,30 +314,7 @@ def _is_narrow(found: Sequence[Token], i: int) -> bool:
     return bool(inside) and (inside[0].text == "-" or inside[0].text.strip("0.") == "")
 
 
-def _height(found: Sequence[Token], i: int) -> int:
-    """Return the position after the line height in brackets that follows a line break; 0 if there is none."""
-    if i >= len(found) or found[i].text != "[":
-        return 0
-    end = next((k for k in range(i, min(i + 8, len(found))) if found[k].text == "]"), i)
-    inside = [t for t in found[i + 1 : end] if t.text != "-"]
-    unit = "".join(t.text for t in inside[1:])
-    return end + 1 if inside and inside[0].kind == "number" and unit in ("em", "ex", "pt", "mm", "cm") else 0
-
-
-def _underset(found: Sequence[Token], i: int) -> list[Token]:
-    """Return an operator such as min with the text below it as its subscript; empty for other words."""
-    end = group_end(found, i)
-    if end >= len(found) or found[i].kind != "open":
-        return []
-    above = found[end : group_end(found, end)]
-    word = "".join(t.text for t in above if t.kind == "letter" or t.text in OPTIMA)
-    if word.removeprefix("operatorname") not in OPTIMA:
-        return []
-    at = found[i].at
-    return [Token("macro", word, at), Token("sign", "_", at), *found[i:end]]
-
-
-def _has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
+def has_formula(found: Sequence[Token], i: int, kept: Sequence[Token]) -> bool:
     """Return whether words at a position contain formulas with relations, and are not an index."""
     index = any(token.text in "^_" for token in kept[-2:])
     inside = found[i : group_end(found, i)] if i < len(found) and found[i].kind == "open" else []
@@ -345,23 +327,23 @@ def _is_sign(token: Token) -> bool:
     return token.text in RELATIONS or token.text in SIGNS or token.text in CONNECTIVES or token.text in ("\\", REMARK)
 
 
-def _apart(found: Sequence[Token], i: int) -> list[Token]:
+def apart(found: Sequence[Token], i: int) -> list[Token]:
     """Return the words at a position and the formulas between them as separate parts."""
     macro, opening = found[i - 1], found[i]
-    apart: list[Token] = []
+    parts: list[Token] = []
     spoken: list[Token] = []
     formula = False
     for token in [*found[i + 1 : group_end(found, i) - 1], replace(opening, text="$")]:
         if token.text != "$":
-            (apart if formula else spoken).append(token)
+            (parts if formula else spoken).append(token)
             continue
         if any(t.kind == "letter" for t in spoken):
-            apart += [macro, opening, *spoken, replace(opening, kind="close", text="}")]
+            parts += [macro, opening, *spoken, replace(opening, kind="close", text="}")]
         spoken, formula = [], not formula
-    return apart
+    return parts
 
 
-def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
+def is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]) -> bool:
     """Return whether the group at a position is plain language, either outside brackets or alone within one."""
     index = any(token.text in "^_" for token in kept[-2:-1] if kept[-1].kind == "open")
     index |= bool(kept) and kept[-1].is_sign("^_")
@@ -381,7 +363,12 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     plain = found[i - 1].text.startswith(("text", "mbox"))
     several = plain and " " in said and not all(word in UNITS for word in said.split())
     spoken = said.strip(" .,:;()").lower()
-    if spoken.startswith("constant") or spoken == "otherwise":
+    if spoken.startswith("constant") or spoken == "otherwise" or not _DENIALS.isdisjoint(spoken.split()):
+        return False
+    if _is_condition(kept) and not SAID.issuperset(set(spoken.split()) - {"all"}):
+        return False
+    measured = next((t for t in reversed(kept) if t.text != " "), END).kind == "number"
+    if measured and inside[0].kind == "letter" and said.split()[0].lower() not in SAID | SHORT_WORDS:
         return False
     padded = inside[0].at > found[i].at + 1 or found[end - 1].at > inside[-1].at + len(inside[-1].text)
     behind = found[end] if end < len(found) else None
@@ -391,3 +378,15 @@ def _is_spoken(found: Sequence[Token], i: int, depth: int, kept: Sequence[Token]
     worded = spoken in SAID | SHORT_WORDS or (plain and padded and between and len(spoken) > 2 and spoken not in UNITS)
     worded |= plain and any(ord(c) > 0x3FF and c.isalpha() for c in spoken)
     return alone or several or worded or said.endswith(":") or (said[0] == "(" and said[-1] == ")")
+
+
+def _is_condition(kept: Sequence[Token]) -> bool:
+    """Return whether the next token stands in the condition of a case, of which no word may be left out."""
+    begins = [k for k, token in enumerate(kept) if token.group and token.text.endswith("cases")]
+    if not begins or kept[begins[-1]].kind != "begin":
+        return False
+    row = list(kept[begins[-1] + 1 :])
+    while any(token.is_macro("\\") for token in row):
+        row = row[next(k for k, token in enumerate(row) if token.is_macro("\\")) + 1 :]
+    cells = [token.text for token in row]
+    return "&" in cells and "=" not in cells[: cells.index("&")] and len(cells) > cells.index("&") + 1

@@ -12,6 +12,9 @@ from satsym.auditing.latex.remarks import REMARK
 from satsym.auditing.latex.tokens import COMMA_IN_NUMBER, END, Token, Unread, end_of, environment, group_end
 from satsym.auditing.latex.words import CLOSING, COUNTERS, ELLIPSES, OPENING, OPTIMA, RELATIONS, SYSTEMS, TIMES, UPRIGHT
 
+_GROUPED = 3
+"""Number of digits that a comma parts from the others in a number."""
+
 
 @dataclass
 class Line:
@@ -53,13 +56,24 @@ def lines(found: Sequence[Token]) -> list[Line]:
     for line in done:
         _refuse_arrow(line)
     related = any(not line.bare for line in done)
-    return [line for line in done if not (related and line.bare and _is_label(line.sides[0]))]
+    kept = [line for line in done if not (related and line.bare and _is_label(line.sides[0]))]
+    bare = next((line.sides[0] for line in kept if line.bare and not _seeks(line.sides[0])), None)
+    if related and bare:
+        raise Unread("an expression without a relation stands beside an equation", bare[0].at)
+    return kept
+
+
+def _seeks(side: Sequence[Token]) -> bool:
+    """Return whether an expression is sought to be least or greatest, under constraints that stand beside it."""
+    said = "".join(t.text for t in side[:12] if t.text not in ("{", "operatorname", *UPRIGHT))
+    return said.startswith(tuple(OPTIMA)) or "arg" in said
 
 
 def _is_label(side: Sequence[Token]) -> bool:
-    """Return whether a separate expression is only a number in brackets or a single name, and can be left out."""
+    """Return whether a separate expression is only a number or star in brackets, or dots, and can be left out."""
     inside = [token for token in side if token.text not in "()."]
-    return len(inside) <= 1 and len(side) <= 3
+    domain = len(side) - side[0].is_macro("partial") == 1 and (side[-1].text[0].isupper() or side[0].text in ELLIPSES)
+    return not inside or domain or (side[0].text == "(" and len(inside) == 1 and inside[0].kind != "letter")
 
 
 def _parted(line: Line) -> list[Line]:
@@ -74,12 +88,15 @@ def _parted(line: Line) -> list[Line]:
 
 
 def _refuse_arrow(line: Line) -> None:
-    """Refuse an arrow that could mean a limit, an implication or a map, and an inequality in a chain of relations."""
-    for before, sign, after in zip(line.sides, line.signs, line.sides[1:], strict=False):
+    """Refuse an arrow that could mean a limit, an implication or a map, and other signs that end a chain."""
+    for k, (sign, before) in enumerate(zip(line.signs, line.sides, strict=False)):
+        at = (line.sides[k + 1] or before)[0].at
         if sign == "unequal" and "unequal" in line.signs[:-1]:
-            raise Unread("inequalities in chains of relations are not supported", (after or before)[0].at)
+            raise Unread("inequalities in chains of relations are not supported", at)
+        if sign == "=" and "element" in line.signs[:k]:
+            raise Unread("it is not clear what is equal to this side of a chain", at)
         if sign == "tends" and len(line.signs) > 1 and line.signs[:-1] != ["="] * (len(line.signs) - 1):
-            raise Unread("arrows between more than two expressions are not supported", (after or before)[0].at)
+            raise Unread("arrows between more than two expressions are not supported", at)
 
 
 def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
@@ -111,6 +128,7 @@ def _rows(found: Sequence[Token]) -> list[tuple[int, list[Token]]]:
         if token.kind == "end" and systems:
             levels.pop()
             if systems.pop():
+                i += i < len(found) and found[i].is_macro("}")  # a brace on the right of all equations
                 continue
         inside = not all(systems)
         if token.is_macro(("\\", "cr")) and not inside:
@@ -247,8 +265,10 @@ def _at_commas(found: Sequence[Token]) -> list[list[Token]]:
     parts = [piece for part in parts for piece in _before_condition(part)]
     listed = any(token.text in ELLIPSES for token in found)
     listed |= any(len(part) == 3 and part[0].text in COUNTERS and part[1].text == "=" for part in parts)
-    for before, after in pairwise(part for part in parts if part and not listed):
+    for before, after in pairwise(part for part in parts if part):
         digits = before[-1]
+        if listed and len(after[0].text) != _GROUPED:
+            continue
         if digits.kind == after[0].kind == "number" and after[0].at == digits.at + len(digits.text) + 1:
             raise Unread(COMMA_IN_NUMBER, after[0].at - 1)
     kept = [part for part in (_without_stop(part) for part in parts) if part]
@@ -318,7 +338,7 @@ def _goes_on_as_list(relation: Sequence[Token], later: Sequence[Sequence[Token]]
             break
         rest.append(part)
     if any(token.is_macro(ELLIPSES) for part in rest for token in part):
-        return True
+        return relation[-1].text != ")"  # else the vectors of a list of relations
     return relation[-1].text in ELLIPSES or all(len(part) == 1 and part[0].kind == "number" for part in rest)
 
 

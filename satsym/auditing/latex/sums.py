@@ -56,6 +56,10 @@ class SumCursor(EnclosedCursor):
         """Read a sum or product over an index: the term, the index, and the limits as far as they are printed."""
         limits = self._limits()
         parts: list[Node] = [self._product()]
+        if token.text == "prod" and isinstance(parts[0], Mul):
+            index = {t.text for t in limits.get("_", []) if t.kind == "letter"}
+            if not all(index & self._indices(factor) for factor in parts[0].factors):
+                raise Unread(words.OPERAND_ENDS, token.at)
         if below := limits.get("_"):
             if all(t.kind == "letter" for t in below):  # indices side by side
                 below = [t for letter in below for t in (letter, Token("sign", ",", letter.at))][:-1]
@@ -73,6 +77,8 @@ class SumCursor(EnclosedCursor):
     def _integral(self, token: Token) -> Node:
         """Read an integral: integrand up to the differential, variable, and limits as far as they are printed."""
         limits = self._limits()
+        if "^" in limits and "_" not in limits:
+            raise Unread("an integral with an upper limit alone is not supported", token.at)
         self._put_differential_last()
         begin, depth = self._i, 0
         while (now := self._peek()) is not END:
@@ -89,6 +95,7 @@ class SumCursor(EnclosedCursor):
                     integrand = self._found[begin : here - along]
                     tree = self._inner(integrand, token.at) if integrand else Num(Fraction(1))
                     over = [volume] if volume else [self._symbol(letter, now.at) for letter in letters if letter]
+                    self._reading.integrated |= {one.name for one in over if isinstance(one, Sym)}
                     parts = [tree, over[0] if len(over) == 1 else Call("list", tuple(over))]
                     parts += [self._limit(limits[sign], token.at) for sign in "_^" if sign in limits]
                     name = "line_integral" if along and letters and letters[0] and letters[0].bold else "integral"

@@ -93,9 +93,9 @@ BROKEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffd]")
 """Pattern of the characters that no formula may contain."""
 _SUBSTITUTES = {
     "\u2212": "-",
-    "\u00b7": "*",
-    "\u22c5": "*",
-    "\u00d7": "*",
+    "\u00b7": r"\cdot ",
+    "\u22c5": r"\cdot ",
+    "\u00d7": r"\times ",
     "\u2032": "'",
     "\u00b0": r"^\circ ",
     "\u00b2": "^2",

@@ -10,7 +10,7 @@ FUNCTIONS |= {
 RECIPROCALS = {"sec": "cos", "csc": "sin", "cot": "tan", "sech": "cosh", "csch": "sinh", "coth": "tanh"}
 ACCENTS = {"dot": 1, "ddot": 2, "dddot": 3, "ddddot": 4}
 MARKS = {"hat": "hat", "widehat": "hat", "bar": "bar", "overline": "bar", "tilde": "tilde", "widetilde": "tilde"}
-MARKS |= {"check": "check", "breve": "breve", "underline": "bar"}
+MARKS |= {"check": "check", "breve": "breve", "underline": "under"}
 STYLES = dict.fromkeys(
     "mathbf boldsymbol bm bold vec vect pmb overrightarrow bf textbf symbf symbfit mathbfit".split(), "vector"
 )
@@ -82,6 +82,7 @@ OPTIMA = {
 ARGUMENT_OR_FACTOR = "this bracket could be an argument or a factor; write \\cdot before a factor"
 PRIMED = "this prime could be a transpose or a derivative; write ^\\top or \\frac{d}{dt}"
 OPERAND_ENDS = "without brackets, it is not clear where the operand of this operator ends"
+BRACES = "braces could enclose a set here; write round brackets around a product"
 EITHER_PRODUCT = "this could be a product of numbers or a cross product; set vectors in bold, or write \\cdot"
 NOT_COMPARED = frozenset(RELATIONS.values()) | frozenset(OPTIMA.values())
 NOT_COMPARED |= frozenset(
@@ -112,7 +113,7 @@ CLOSING = frozenset(("}", "rbrace", "rbrack", "rangle"))
 """Opening and closing brackets that are macros."""
 BARS = frozenset(("lvert", "lVert", "|", "vert", "Vert"))
 """Vertical bars that are macros and may open."""
-STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal", "mathsf"))
+STARS, TRANSPOSED = frozenset(("*", "ast", "star")), frozenset(("T", "top", "intercal"))
 NUMBERED_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh log exp".split())
 TIMES_OF_ANGLES, PLACES = frozenset(("t", "tau")), frozenset("x y z s theta phi varphi psi alpha beta".split())
 FREQUENCIES = frozenset("i j k l m n p q omega Omega nu lambda".split())
@@ -123,15 +124,15 @@ AT_A_TIME = frozenset("t t_f t_0 t0 tf T t_1 t1 0 tau".split())
 ATOMS = frozenset("binom sum prod frac tfrac dfrac cfrac sqrt lvert lVert partial lim nabla infty".split())
 ATOMS |= ELLIPSES | OPENING | INTEGRALS.keys()
 CONSTANT = ("constant", "const")
-SPELLED = tuple("arcsin arccos arctan sinh cosh tanh sign sin cos tan exp log sgn det min max sec csc cot ln".split())
+SPELLED = tuple(
+    "arcsin arccos arctan sinh cosh tanh sign sqrt sin cos tan exp log sgn det min max sec csc cot ln".split()
+)
 """Functions that look like products of letters without their backslash; longer names come first."""
 CALLED = tuple("eig diag rank trace dim ker span adj sat sinc erf cov Cov var Var vec tr Tr mod grad div curl".split())
 """Names of functions that look like products of letters before a bracket."""
 OPERATOR_NAMES = frozenset("Pr dim ker deg gcd hom lg".split())
 """Functions of unknown meaning for which LaTeX has a macro."""
-UNKNOWN = frozenset(
-    "tr trace rank diag sinc sec csc cot Re Im erf sn cn dn am arg sup inf grad div rot curl cov var mod".split()
-)
+UNKNOWN = frozenset("tr trace rank diag sinc sec csc cot Re Im erf sn cn dn am arg cov var mod SO SE".split())
 """Functions of unknown meaning that are printed upright."""
 SAID = frozenset("and or if for where when with otherwise dan atau jika untuk dengan bila dimana".split())
 SAID |= frozenset(("subject to", "such that", "s.t.", "s.t", "i.e.", "i.e", "since", "while", "as", "etc"))
