@@ -58,7 +58,8 @@ def beside_thresholds(
     search = _Search(*watched, arguments, out)
     found: set[tuple[int, str]] = set()
     with mp.workdps(digits):
-        for begin in places:
+        for place in places:
+            begin = {**place, **{a: exactly(place[a]) for a in arguments}}
             first = search.conditions(begin)
             for argument in (a for a in MOVED_ARGUMENTS if a in arguments):
                 for component in range(len(begin[argument])):
@@ -78,18 +79,19 @@ class _Search:
     out: tuple[int, ...] | None
 
     def conditions(self, place: Place) -> dict[int, Any]:
-        """Return the differences of both sides of all conditions evaluated at some arguments, where these are real."""
+        """Return the differences of both sides of all evaluated conditions, where real; arguments are of mpmath."""
         self.seen.clear()
-        given = [exactly(place[a]) for a in self.arguments]
         with suppress(*NO_NUMBERS):
-            self.function(*given, *(() if self.out is None else (np.empty(self.out, dtype=object),)))
+            self.function(
+                *(place[a] for a in self.arguments), *(() if self.out is None else (np.empty(self.out, dtype=object),))
+            )
         return {condition: gap for condition, gap in self.seen.items() if not isinstance(gap, mp.mpc)}
 
     def pairs(
         self, begin: Place, first: Mapping[int, Any], moved: tuple[str, int], wanted: Iterable[int]
     ) -> Iterator[tuple[int, list[Place]]]:
         """Return conditions with arguments on both sides of their thresholds, reached by changing one number."""
-        number = mp.mpf(begin[moved[0]][moved[1]])
+        number = begin[moved[0]][moved[1]]
         other = number * (1 + mp.mpf(FIRST_STEP))
         second = self.conditions(_moved(begin, *moved, other))
         for condition in wanted:

@@ -53,7 +53,8 @@ def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function
 
     The record contains, by the number of a condition in the function, the difference of the two sides of the condition.
     Conditions are comparisons, steps, choices of the smaller or larger number, and zero times a root, which is
-    undefined where the law is. Conditions within an iteration are left out.
+    undefined where the law is. Conditions within an iteration are left out, and so are statements on which no condition
+    depends: the functions serve to evaluate conditions and return nothing.
     """
     found = {}
     for node in ast.parse(text).body:
@@ -62,8 +63,30 @@ def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function
             changed, seen = watching.visit(node), dict[int, Any]()
             if watching.count:
                 note = {_Watched.NOTE: _noting(seen)}
+                changed.body = _needed(changed.body)
                 found[node.name] = _defined([changed], written, note)[node.name], seen
     return found
+
+
+def _needed(body: Sequence[ast.stmt]) -> list[ast.stmt]:
+    """Return the statements that evaluate a watched condition, and those on which they depend."""
+    kept: list[ast.stmt] = []
+    names: set[str] = set()
+    for statement in reversed(body):
+        assigned = {name.id for node in ast.walk(statement) for name in _assigned(node)}
+        used = {node.id for node in ast.walk(statement) if isinstance(node, ast.Name)}
+        if _Watched.NOTE in used or assigned & names:
+            kept.append(statement)
+            names |= used - (assigned - names)
+    return kept[::-1]
+
+
+def _assigned(node: ast.AST) -> Iterator[ast.Name]:
+    """Return the name that a node assigns to, or to an element of which it assigns."""
+    if isinstance(node, ast.Name | ast.Subscript) and isinstance(node.ctx, ast.Store):
+        named = node.value if isinstance(node, ast.Subscript) else node
+        if isinstance(named, ast.Name):
+            yield named
 
 
 def _noting(seen: dict[int, Any]) -> Function:
