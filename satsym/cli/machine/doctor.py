@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import satsym
@@ -141,11 +142,17 @@ def _dependency(requirement: Requirement) -> Finding:
     return Finding(requirement.name, version, fine, True, "" if fine else wanted)
 
 
-def _module_of(package: str) -> str:
-    """Return the module of an installed package; that of python-flint is flint."""
+@cache
+def _installed_modules() -> Mapping[str, Sequence[str]]:
+    """Map the names of installed modules to their packages, for which the files of all packages are read."""
     from importlib import metadata
 
-    own = sorted(module for module, packages in metadata.packages_distributions().items() if package in packages)
+    return metadata.packages_distributions()
+
+
+def _module_of(package: str) -> str:
+    """Return the module of an installed package; that of python-flint is flint."""
+    own = sorted(module for module, packages in _installed_modules().items() if package in packages)
     return package if package in own or not own else own[0]
 
 
