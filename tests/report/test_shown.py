@@ -19,7 +19,7 @@ from satsym.report.results.study_table import path_of
 from satsym.report.terminal.comparison import comparison_text, specs_of
 from satsym.report.terminal.solution import solution_text
 from satsym.report.terminal.study import study_text
-from satsym.solvers import solve
+from tests.support.solved import solve
 
 KILOMETRES = ("km", "km/s", "rad", "rad/s")
 
@@ -71,7 +71,7 @@ def test_comparisons_leave_units_out_where_the_results_do() -> None:
 
 
 @pytest.mark.parametrize(
-    ("varied", "unit"), [({"initial.r": (1.0, 1.1, 2)}, ""), ({"parameters.sigma": (1.0, 2.0, 2)}, " [km**2/s**3]")]
+    ("varied", "unit"), [({"initial.r": (1.0, 1.1, 2)}, ""), ({"parameters.sigma": (1.0, 1.01, 2)}, " [km**2/s**3]")]
 )
 def test_the_worst_cases_have_a_unit_only_where_a_solution_has_one(
     varied: dict[str, tuple[float, float, int]], unit: str, tmp_path: Path
@@ -82,7 +82,7 @@ def test_the_worst_cases_have_a_unit_only_where_a_solution_has_one(
 
 
 @pytest.mark.parametrize(
-    ("name", "varied", "shown"), [("initial.r", (1.0, 1.1, 2), ""), ("parameters.sigma", (1.0, 2.0, 2), " [km]")]
+    ("name", "varied", "shown"), [("initial.r", (1.0, 1.1, 2), ""), ("parameters.sigma", (1.0, 1.01, 2), " [km]")]
 )
 def test_studies_leave_units_out_where_all_cases_are_multiples(
     name: str, varied: tuple[float, float, int], shown: str, tmp_path: Path
