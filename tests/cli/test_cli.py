@@ -19,6 +19,7 @@ from satsym.cli import main, output
 from satsym.cli.output import live
 from satsym.instance import SolverOptions
 from satsym.report.results.files import to_json
+from tests.support import solved
 
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = [
@@ -80,9 +81,10 @@ PROBLEMS = (
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
-    """Exit code, stdout and stderr of a command, run in an empty folder of its own."""
+    """Exit code, stdout and stderr of a command, run in an empty folder of its own; no instance is solved twice."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("SATSYM_DEBUG", raising=False)
+    monkeypatch.setattr("satsym.solvers.solve", solved.solve)
 
     def run(*arguments: str | Path) -> tuple[int, str, str]:
         code = main([str(argument) for argument in arguments])

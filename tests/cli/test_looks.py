@@ -120,7 +120,7 @@ def test_what_stands_above_a_panel_never_overlaps(size: str) -> None:
     """Meaning on the left, switching times or the end on the right; Indonesian is the longer language."""
     from satsym import instance
     from satsym.report.said import spoken
-    from satsym.solvers import solve
+    from tests.support.solved import solve
 
     found = solve(instance.load("return-to-orbit-005"))
     with spoken("id"):

@@ -18,9 +18,9 @@ from satsym.instance import Instance
 from satsym.report.results import problem
 from satsym.report.results.examination import NOT_COMPARED, examine
 from satsym.report.results.objects import solution_object
-from satsym.solvers import solve
 from satsym.status import BadInput, Verdict
 from tests.support.models import build, q, scalar, w
+from tests.support.solved import solve
 
 NAMES = ("soft-return", "return-to-orbit-005", "double-integrator-time", "bryson-denham")
 """Smooth, with bounds that are met, with a switch, and with a boundary arc."""

@@ -13,7 +13,7 @@ from satsym.report.plots import style
 from satsym.report.plots.pages import convergence
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
-from satsym.solvers import solve
+from tests.support.solved import solve
 
 IN_ARCS = [name for name in instance.shipped() if instance.load(name).model.spec.in_arcs]
 """With path constraints, or points on the way: the problem without these is solved first, and costs less."""

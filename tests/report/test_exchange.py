@@ -21,10 +21,10 @@ from satsym.instance.orbit import BODIES
 from satsym.report.exchange import FORMATS, exported
 from satsym.report.exchange.ephemeris import Ephemeris
 from satsym.solution import Simulation
-from satsym.solvers import solve
 from satsym.status import BadInput
 from tests.cli.test_cli import Run, run
 from tests.support import exchange
+from tests.support.solved import solve
 
 __all__ = ["run"]
 

@@ -20,9 +20,9 @@ from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.space.attitudes import Attitude, about, turned_by
 from satsym.solution import Solution
-from satsym.solvers import solve
 from satsym.status import BadInput
 from tests.cli.test_cli import Run, run
+from tests.support.solved import solve
 
 __all__ = ["run"]
 

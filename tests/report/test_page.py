@@ -27,11 +27,11 @@ from satsym.report.terminal.certificate import condition_rows, verdict_text
 from satsym.report.terminal.solution import solution_text
 from satsym.report.texts import load
 from satsym.solution import Certificate, Check, Solution
-from satsym.solvers import solve
 from satsym.status import Status, Verdict
 from satsym.symbolic import loader
 from tests.cli.test_cli import Run, case, run
 from tests.support.derived import derived, stated
+from tests.support.solved import solve
 
 __all__ = ["case", "run"]
 

@@ -31,9 +31,10 @@ from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
 from satsym.report.terminal.solution import solution_text
 from satsym.solution import Iteration, Simulation, Solution
-from satsym.solvers import simulate, solve
+from satsym.solvers import simulate
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
+from tests.support.solved import solve
 
 SOLVED = ["overview", "orbit", "states", "controls", "costates", "invariants", "convergence"]
 NODES = 61

@@ -20,12 +20,13 @@ from satsym.cli.help import texts
 from satsym.report import plots, said
 from satsym.report.said import counted, decimal, message, numbers, say, spoken, translations
 from satsym.report.terminal.keys import keys_text
-from satsym.solvers import simulate, solve
+from satsym.solvers import simulate
 from satsym.spec import ProblemSpec
 from satsym.status import Status, Verdict
 from satsym.symbolic.dimension_algebra import _TOLD
 from tests.cli.test_cli import Run, case, run
 from tests.support.said import ENGLISH, HOLE, anonymous, looked_up, refused, written
+from tests.support.solved import solve
 
 __all__ = ["case", "run"]
 

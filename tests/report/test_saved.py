@@ -21,9 +21,10 @@ from satsym.report.look import SCREEN
 from satsym.report.results import trajectory
 from satsym.report.results.objects import simulation_object, solution_object
 from satsym.solution import Simulation, Solution
-from satsym.solvers import simulate, solve
+from satsym.solvers import simulate
 from satsym.status import BadInput
 from tests.support.damage import signed
+from tests.support.solved import solve
 
 NAME = "return-to-orbit-006"
 

@@ -19,8 +19,8 @@ from satsym.report.plots.space import surroundings
 from satsym.report.plots.space.views import from_aside
 from satsym.report.results import restrictions
 from satsym.solution import Event, Simulation
-from satsym.solvers import solve
 from satsym.symbolic import loader
+from tests.support.solved import solve
 
 CONSTRAINED = (
     "bryson-denham beam approach-cone return-above return-in-slot obstacle goddard-pressure rayleigh-mixed "

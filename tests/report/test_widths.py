@@ -14,7 +14,8 @@ from satsym.report.terminal import listing
 from satsym.report.terminal.orbit import orbit_text
 from satsym.report.terminal.solution import simulation_text, solution_text, with_files
 from satsym.report.terminal.table import table, wrapped
-from satsym.solvers import simulate, solve
+from satsym.solvers import simulate
+from tests.support.solved import solve
 
 WORDS = st.text("abcdefghij", min_size=1, max_size=7)
 
