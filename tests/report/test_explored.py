@@ -13,12 +13,15 @@ import pytest
 
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
+from satsym.report.html.markup import Markup
 from satsym.report.page import explored as shown_as
+from satsym.report.page import run as run_page
 from satsym.report.page.explore import explored
 from satsym.report.page.explored import Answer, data, shown, switching_functions
 from satsym.report.page.run import Given, render
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.space.attitudes import Attitude, about, turned_by
+from satsym.report.texts import load
 from satsym.solution import Solution
 from satsym.status import BadInput
 from tests.cli.test_cli import Run, run
@@ -152,7 +155,12 @@ def test_a_path_in_space_has_three_coordinates() -> None:
     assert scene["radius"] / largest == pytest.approx(6378.1366 / np.abs(found.x[:3]).max(), rel=1e-3)
 
 
-def test_the_page_loads_nothing_and_is_the_static_one_but_for_what_scripts_show(returned: Solution) -> None:
+def test_the_page_loads_nothing_and_is_the_static_one_but_for_what_scripts_show(
+    returned: Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("overview", "pictures"):  # of the same solution: they are drawn once
+        drawn = getattr(run_page, name)(returned, load("en"))
+        monkeypatch.setattr(run_page, name, lambda solution, _, drawn=drawn: drawn if solution is returned else None)
     static = render(returned, None, Given("return-to-orbit"))
     page = render(returned, None, Given("return-to-orbit"), "en", [Answer(returned)])
     assert len(page.encode("utf-8")) <= LARGEST
@@ -169,7 +177,9 @@ def test_the_page_loads_nothing_and_is_the_static_one_but_for_what_scripts_show(
     assert 'class="explorer" hidden' in section[1], "nothing is to be seen of it where no script runs"
 
 
-def test_what_authors_write_ends_no_script(returned: Solution) -> None:
+def test_what_authors_write_ends_no_script(returned: Solution, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_page, "pictures", lambda _solution, _texts: [])  # which have no titles
+    monkeypatch.setattr(run_page, "overview", lambda _solution, _texts: Markup())
     case = replace(returned.instance, title="</script><b>")
     page = render(replace(returned, instance=case), None, Given("x"), "en", [Answer(returned, "</script><i>")])
     inside = re.search(r'<script type="application/json" id="explore-data">(.*?)</script>', page, re.S)

@@ -65,6 +65,13 @@ def solution() -> Solution:
     return solve(instance.load("soft-return"))
 
 
+@pytest.fixture
+def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave pictures out of pages, where these are looked at for their words."""
+    monkeypatch.setattr("satsym.report.page.run.pictures", lambda _solution, _texts: [])
+    monkeypatch.setattr("satsym.report.page.run.overview", lambda _solution, _texts: Markup())
+
+
 CELL = '<td class="number">'
 """What a number of a table begins with."""
 
@@ -225,10 +232,8 @@ def test_a_body_that_turns_is_shown_turn_by_turn_and_stands_at_its_end_without_m
     np.testing.assert_allclose(last, [0.5 * SIDE + 0.3 * SIDE * view[0], 0.5 * SIDE - 0.3 * SIDE * view[1]], atol=0.06)
 
 
-def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
-    solution: Solution, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("satsym.report.page.run.pictures", lambda _solution, _texts: [])  # have a test of their own
+@pytest.mark.usefixtures("without_pictures")  # which have a test of their own
+def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(solution: Solution) -> None:
     short = replace(solution, certificate=None)
     indonesian = render(short, None, Given("soft-return"), "id")
     assert indonesian == render(short, None, Given("soft-return"), "id")
@@ -239,10 +244,10 @@ def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
     assert "&lt;b&gt;no &amp; way" in failed
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(
-    text: str, solution: Solution, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    text: str, solution: Solution, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
     own = render(solution, derived(loader.problem("polar_orbit")[0]), Given("x.toml", "my model.py"))
     assert "satsym latex polar_orbit" in text
     assert "satsym report x.toml --html report.html --derivation &#x27;my model.py&#x27;" in own
@@ -257,10 +262,8 @@ def test_the_commands_that_reproduce_it_name_the_file_of_a_model_of_ones_own(
     assert "satsym latex" not in render(solution, None, Given("x.toml"))
 
 
-def test_other_values_are_told_beside_the_instance_and_in_the_commands_that_reproduce_it(
-    solution: Solution, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("satsym.report.page.run.pictures", lambda *_, **__: {})
+@pytest.mark.usefixtures("without_pictures")
+def test_other_values_are_told_beside_the_instance_and_in_the_commands_that_reproduce_it(solution: Solution) -> None:
     values = ("initial.r=1.05", "parameters.c1=a b")
     page = render(solution, None, Given("x.toml", values=values))
     assert "<p>Values that replace those in the file: initial.r=1.05, parameters.c1=a b.</p>" in page
