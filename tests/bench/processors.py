@@ -37,7 +37,6 @@ SAMPLE = (
     "soft-return",
     "double-integrator-fuel",
     "transfer-time",
-    "ends-4-rendezvous",
     "analyse geo-lqr",
     "lqr uny-lqr",
 )
@@ -192,25 +191,31 @@ def _flags() -> set[str]:
 
 def _header(one: Kernels) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The kernels that OpenBLAS and NumPy say they use under these settings."""
-    with _child(one) as child:
-        said = child.ask([])
+    said = _child(one).ask([])
     if "blas" not in said:
         raise RuntimeError(f"{one.name}: {said['said']}")
     return tuple(said["blas"]), tuple(said["numpy"])
 
 
+_CHILDREN: dict[tuple[tuple[str, str], ...], Child] = {}
+"""The processes that were begun, by their settings."""
+
+
 def _child(one: Kernels) -> Child:
-    return Child("tests.bench.processors", "--child", settings=one.settings)
+    """The process under these settings, which answers all that is asked under them."""
+    settings = tuple(sorted(one.settings.items()))
+    if settings not in _CHILDREN:
+        _CHILDREN[settings] = Child("tests.bench.processors", "--child", settings=one.settings)
+    return _CHILDREN[settings]
 
 
 def _answers(one: Kernels, names: list[str]) -> Iterator[Said]:
     """What a process says of the cases under these settings."""
-    with _child(one) as child:
-        for name in names:
-            said = child.ask([name, one.moved])
-            if "said" in said:  # an error that is the same everywhere says nothing of processors
-                raise RuntimeError(f"{name} ({one.name}): {said['said']}")
-            yield {"case": name, **said}
+    for name in names:
+        said = _child(one).ask([name, one.moved])
+        if "said" in said:  # an error that is the same everywhere says nothing of processors
+            raise RuntimeError(f"{name} ({one.name}): {said['said']}")
+        yield {"case": name, **said}
 
 
 def differs(one: Said, other: Said) -> list[str]:
@@ -225,6 +230,14 @@ def differs(one: Said, other: Said) -> list[str]:
 
 def run(names: list[str]) -> int:
     """Run all configurations; 1 where anything differs from the first."""
+    try:
+        return _compared(names)
+    finally:
+        while _CHILDREN:
+            _CHILDREN.popitem()[1].end()
+
+
+def _compared(names: list[str]) -> int:
     todo, left = configurations()
     print("\n".join(left))
     known: dict[str, Said] = {}

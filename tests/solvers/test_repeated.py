@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 import msgspec
@@ -28,10 +29,15 @@ class Pair:
 
     def __init__(self, means: str) -> None:
         self.solve = OTHER[means]
-        compiled = means == "shooting"
-        self.plain, self.bounded = (
-            Repeated(instance.load(name), compiled) for name in ("return-to-orbit", "return-to-orbit-005")
-        )
+        self.compiled = means == "shooting"
+
+    @cached_property
+    def plain(self) -> Repeated:
+        return Repeated(instance.load("return-to-orbit"), self.compiled)
+
+    @cached_property
+    def bounded(self) -> Repeated:
+        return Repeated(instance.load("return-to-orbit-005"), self.compiled)
 
 
 @pytest.fixture(scope="module", params=MEANS)
