@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -32,6 +33,22 @@ PROBLEMS = tuple(replace(walk, name=title, title=title) for title in TITLES)
 """
 
 
+REALLY = artefacts._rendered
+RENDERED: dict[tuple[Any, ...], dict[str, str]] = {}
+"""The files that problems led to, by what the files beside the derivation file contain."""
+
+
+def rendered(job: artefacts.Job) -> dict[str, str]:
+    """What is derived, once from the same files: the tests are about when something is."""
+    path, name, folder, seconds = job
+    files = sorted(one for one in path.parent.iterdir() if one.suffix in (".py", ".txt"))
+    stated = tuple((one.name, one.read_bytes()) for one in files)
+    key = (path.name, name, folder.relative_to(path.parent), seconds, stated)
+    if key not in RENDERED:
+        RENDERED[key] = REALLY(job)
+    return RENDERED[key]
+
+
 @pytest.fixture
 def derived(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., list[str]]:
     """Names of the problems that a run of the command has derived."""
@@ -41,8 +58,7 @@ def derived(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., li
     (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
     (tmp_path / "titles.txt").write_text("strolling hiking", encoding="utf-8")
     names: list[str] = []
-    really = artefacts._rendered
-    monkeypatch.setattr(artefacts, "_rendered", lambda job: (names.append(job[1]), really(job))[1])
+    monkeypatch.setattr(artefacts, "_rendered", lambda job: (names.append(job[1]), rendered(job))[1])
 
     def run(*options: str, code: int = 0) -> list[str]:
         names.clear()
