@@ -11,7 +11,7 @@ from satsym.report.texts import languages
 from satsym.symbolic import Problem
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import translated, variables_of, with_origins
-from tests.support.derived import each, names, shipped, stated
+from tests.support.derived import document, each, names, shipped, stated
 
 MATHEMATICS = re.compile(r"\$([^$]*)\$|\\begin\{(align|equation)\*?\}(.*?)\\end\{\2|\\\[(.*?)\\\]", re.DOTALL)
 DRESS = r"(?:d*dot|bar|hat|math\w+|boldsymbol|text|[lr]vert|frac|left|right|label|eqref)"
@@ -62,6 +62,6 @@ def test_shipped_models_have_their_titles_and_meanings_in_every_language(languag
 
 
 def test_documents_have_them() -> None:
-    text = render(shipped("polar_orbit"), "id")
+    text = document("polar_orbit", "id")
     assert "kecepatan radial" in text
     assert "radial velocity" not in text

@@ -8,22 +8,21 @@ import pytest
 import sympy as sp
 
 from satsym.report.latex import tex
-from satsym.report.latex.document import render
 from satsym.report.texts import languages
 from satsym.symbolic import Problem
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import positive
 from satsym.symbolic.principle import effort as pn
-from tests.support.derived import shipped, stated
+from tests.support.derived import document, shipped, stated
 
 
 def step_of(name: str, step: str, language: str = "en") -> str:
     """The part of a document that a step takes."""
-    return render(shipped(name), language).partition(rf"\satsymstep{{{name}:{step}}}")[2].partition(r"\satsymstep")[0]
+    return document(name, language).partition(rf"\satsymstep{{{name}:{step}}}")[2].partition(r"\satsymstep")[0]
 
 
 def collected(name: str, language: str = "en") -> str:
-    return render(shipped(name), language).rpartition(r":section.boundary_value}")[2]
+    return document(name, language).rpartition(r":section.boundary_value}")[2]
 
 
 def test_the_law_of_a_thrust_is_that_of_the_problem_and_the_regularised_one_stands_apart() -> None:
@@ -43,8 +42,8 @@ def test_the_law_of_a_thrust_is_that_of_the_problem_and_the_regularised_one_stan
 def test_sets_of_which_h_has_products_are_not_said_to_be_minimised_over_one_by_one() -> None:
     assert "where products occur" in step_of("shuttle", "control_parts")
     assert "product of sets" not in step_of("zermelo", "control_parts")
-    assert "therefore minimised over each set" not in step_of("shuttle", "control_parts") + render(shipped("zermelo"))
-    assert "The norm of the control is bounded" in render(shipped("transfer_fuel"))
+    assert "therefore minimised over each set" not in step_of("shuttle", "control_parts") + document("zermelo")
+    assert "The norm of the control is bounded" in document("transfer_fuel")
 
 
 def test_an_angle_has_its_own_letter() -> None:
@@ -59,16 +58,16 @@ def test_where_h_is_neither_linear_nor_quadratic_no_parts_are_said_to_add_up(nam
 
 
 def test_what_is_examined_is_what_is_announced() -> None:
-    assert "examines stability and controllability." in render(shipped("pitch_scaled"))
-    assert "examines stability, controllability and observability." in render(shipped("clohessy_wiltshire"))
-    text = render(shipped("saddle"))
+    assert "examines stability and controllability." in document("pitch_scaled")
+    assert "examines stability, controllability and observability." in document("clohessy_wiltshire")
+    text = document("saddle")
     assert r"\section{Stability}" in text
     assert "number of states" not in text
     assert "derives the equations of motion" not in text
 
 
 def test_without_controls_none_is_spoken_of() -> None:
-    assert r"\mathbf{u}" not in render(shipped("saddle"))
+    assert r"\mathbf{u}" not in document("saddle")
     assert r"\mathbf{u}" in step_of("explicit_time", "linearisation")
 
 
@@ -79,11 +78,11 @@ def test_formulas_have_the_decimal_sign_of_the_language(language: str) -> None:
 
 
 def test_a_control_that_a_constraint_contains_is_not_called_free() -> None:
-    text = render(shipped("rayleigh_mixed"))
+    text = document("rayleigh_mixed")
     assert "The control is not bounded" not in text
     assert r"step~\ref{rayleigh_mixed:mixed_constraints} gives" in step_of("rayleigh_mixed", "control_law")
     assert r"marked $\mathrm{b}$" in step_of("rayleigh_mixed", "mixed_constraints")
-    assert "The control is not bounded" in render(shipped("rayleigh"))
+    assert "The control is not bounded" in document("rayleigh")
 
 
 def test_a_closed_form_that_leaves_a_constraint_out_says_so() -> None:
@@ -93,7 +92,7 @@ def test_a_closed_form_that_leaves_a_constraint_out_says_so() -> None:
 
 def test_the_control_from_rest_has_a_name_of_its_own_in_the_time_of_the_document() -> None:
     assert r"{U}_{\mathrm{rest}}(\tau)" in step_of("pitch_scaled_energy", "least_effort")
-    assert "U(t)" not in render(shipped("pitch_scaled_energy"))
+    assert "U(t)" not in document("pitch_scaled_energy")
 
 
 @pytest.mark.parametrize(("name", "arcs"), [("singular_regulator", True), ("double_integrator_time", False)])
@@ -107,18 +106,18 @@ def test_orders_of_constraints_are_spoken_of_as_they_are() -> None:
         text = step_of(name, "junction_conditions")
         assert meeting in text
         assert "$p" not in text
-    assert r"\Gamma_{1}" not in render(shipped("goddard_pressure"))
+    assert r"\Gamma_{1}" not in document("goddard_pressure")
 
 
 def test_without_a_reference_no_end_on_it_is_spoken_of() -> None:
-    assert r"\iota^{\mathrm{r}}" not in render(shipped("beam"))
-    assert r"\iota^{\mathrm{r}}" in render(shipped("polar_orbit"))
+    assert r"\iota^{\mathrm{r}}" not in document("beam")
+    assert r"\iota^{\mathrm{r}}" in document("polar_orbit")
     residual = shipped("beam").equation("boundary_residual.x").rhs
     assert n.on_reference(sp.Symbol("x")) in residual.free_symbols  # kernels have it all the same
 
 
 def test_one_thing_has_one_symbol_and_two_have_two() -> None:
-    assert r"$\mathbf{x}_f$" not in render(shipped("beam"))
+    assert r"$\mathbf{x}_f$" not in document("beam")
     for name, letter in (("shuttle", "q"), ("shuttle_heating", "k")):  # whose heating has the letter q
         problem = stated(name)
         assert isinstance(problem, Problem)
@@ -132,8 +131,8 @@ def test_the_second_derivative_by_one_control_is_a_number() -> None:
 
 
 def test_one_body_is_no_plural() -> None:
-    assert "A rigid body rotates" in render(shipped("gyrostat"))
-    assert "Rigid bodies rotate" in render(shipped("gimballed_wheel"))
+    assert "A rigid body rotates" in document("gyrostat")
+    assert "Rigid bodies rotate" in document("gimballed_wheel")
 
 
 def test_minors_are_positive_and_not_merely_not_negative() -> None:
@@ -159,15 +158,15 @@ def test_what_is_divided_by_is_not_zero() -> None:
         ("transfer_time", r" \ne 0$"),
         ("pitch_minimum_energy", "$I_y - I_{wy} > 0$"),
     ):
-        assert assumed in render(shipped(name)).partition(r"\section{The motion}")[0]
-    assert r"\ne 0" not in render(shipped("saddle"))
-    stated_conditions = render(shipped("gimballed_wheel")).partition("Throughout, ")[2].partition("\n")[0]
+        assert assumed in document(name).partition(r"\section{The motion}")[0]
+    assert r"\ne 0" not in document("saddle")
+    stated_conditions = document("gimballed_wheel").partition("Throughout, ")[2].partition("\n")[0]
     assert r"$I_{wy} \ge 0$" not in stated_conditions  # as it is positive
 
 
 def test_entries_that_are_named_are_those_of_a_matrix() -> None:
-    assert "The longer entry of $A$ is\n" in render(shipped("goddard"))
-    assert "The longer entries of $A$ are\n" in render(shipped("gyrostat"))
+    assert "The longer entry of $A$ is\n" in document("goddard")
+    assert "The longer entries of $A$ are\n" in document("gyrostat")
 
 
 def test_a_scaled_quantity_is_defined() -> None:

@@ -30,7 +30,7 @@ from satsym.symbolic.latex.rewriting import readable
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.principle.path import notation as path_notation
-from tests.support.derived import each, shipped
+from tests.support.derived import document, each, shipped
 
 
 @pytest.mark.parametrize("name", each())
@@ -66,8 +66,8 @@ def test_no_symbol_of_a_document_stands_for_two_things(name: str) -> None:
 def test_letters_that_the_machine_chooses_are_free() -> None:
     assert n.letter_of(r"{\dot r}_0") == "r"
     assert n.letter_of(r"\bar{\boldsymbol{\omega}}_{x}") == r"\omega"
-    assert r"A_{21} &=" in render(shipped("gyrostat"))  # where direction cosines are a_xy, and so on
-    assert r"a_{21} = " in render(shipped("goddard"))
+    assert r"A_{21} &=" in document("gyrostat")  # where direction cosines are a_xy, and so on
+    assert r"a_{21} = " in document("goddard")
     variables = (Variable("x", "x_1"), Variable("s", r"\dot s"))
     assert n.free_letter("xsv", variables) == "v"
     assert n.free_letter("xs", variables) == "s"
@@ -84,20 +84,20 @@ def test_an_index_joins_the_one_that_is_there() -> None:
 @pytest.mark.parametrize("language", languages())
 @pytest.mark.parametrize("name", ["beam", "approach_cone", "goddard"])
 def test_no_blank_line_parts_a_sentence_from_its_equations(name: str, language: str) -> None:
-    text = render(shipped(name), language)
+    text = document(name, language)
     assert re.findall(r"[^}\n]\n\n+\\begin\{(?:align|equation)\*?\}", text) == []
 
 
 @pytest.mark.parametrize("name", ["cart_pole", "goddard"])
 def test_a_single_control_is_spoken_of_as_one(name: str) -> None:
-    text = render(shipped(name))
+    text = document(name)
     assert "Each control" not in text
     assert "The control is bounded" in text
     assert "The control must lie between its bounds" in text
 
 
 def test_a_single_control_has_one_switching_function() -> None:
-    text = render(shipped("double_integrator_fuel"))
+    text = document("double_integrator_fuel")
     assert "{Switching function}" in text
     assert r"is linear in the control and in its magnitude, $H = H_0 + \sigma u_1 + w |u_1|$" in text
     assert r"$\tfrac{1}{2} \varepsilon u_1^2$ with $\varepsilon > 0$ is added" in text
@@ -105,18 +105,18 @@ def test_a_single_control_has_one_switching_function() -> None:
 
 
 def test_what_there_is_one_of_is_spoken_of_as_one() -> None:
-    text = render(shipped("hypersensitive"))
+    text = document("hypersensitive")
     assert r"The state $x$ obeys the equation of motion~\eqref{hypersensitive:first_order.x}, and" in text
     assert "The control is not bounded." in text
-    assert "satisfies the path constraint\n" in render(shipped("beam"))
-    assert "satisfies the path constraints\n" in render(shipped("approach_cone"))
-    assert "Eigenvalues with positive real parts, $2$ and $1$, make" in render(shipped("three_modes"))
-    assert "An eigenvalue with a positive real part, $3$, makes" in render(shipped("saddle"))
+    assert "satisfies the path constraint\n" in document("beam")
+    assert "satisfies the path constraints\n" in document("approach_cone")
+    assert "Eigenvalues with positive real parts, $2$ and $1$, make" in document("three_modes")
+    assert "An eigenvalue with a positive real part, $3$, makes" in document("saddle")
 
 
 def test_of_free_controls_no_bounds_are_spoken_of() -> None:
-    assert "bound is active" in render(shipped("cart_pole"))
-    assert "bound is active" not in render(shipped("bryson_denham"))
+    assert "bound is active" in document("cart_pole")
+    assert "bound is active" not in document("bryson_denham")
 
 
 def test_the_boundary_value_problem_leads_to_every_step_of_an_active_constraint() -> None:
@@ -131,12 +131,12 @@ def test_the_boundary_value_problem_leads_to_every_step_of_an_active_constraint(
     ("name", "defined"), [("catalyst", "switching_function.u"), ("zermelo", "control_parts.cosine_of_heading")]
 )
 def test_the_boundary_value_problem_defines_what_its_law_is_stated_in(name: str, defined: str) -> None:
-    collected = render(shipped(name)).rpartition(r"\section{The boundary-value problem}")[2]
+    collected = document(name).rpartition(r"\section{The boundary-value problem}")[2]
     assert rf"\tag{{\ref{{{name}:{defined}}}}}" in collected
 
 
 def test_the_boundary_value_problem_has_the_points_on_the_way() -> None:
-    collected = render(shipped("inspection")).rpartition(r"\section{The boundary-value problem}")[2]
+    collected = document("inspection").rpartition(r"\section{The boundary-value problem}")[2]
     for e in shipped("inspection").step("interior_conditions").equations:
         assert rf"\tag{{\ref{{inspection:interior_conditions.{e.name}}}}}" in collected
     assert "no path constraint is active" not in collected
@@ -144,7 +144,7 @@ def test_the_boundary_value_problem_has_the_points_on_the_way() -> None:
 
 @pytest.mark.slow
 def test_bounds_among_constraints_are_called_so_and_change_no_costate_equation() -> None:
-    text = render(shipped("shuttle_heating"))
+    text = document("shuttle_heating")
     costates = text.partition(r"\satsymstep{shuttle_heating:mixed_costates}")[2].partition(r"\satsymstep")[0]
     assert r"$\Gamma_{1}$" in costates
     assert r"$\Gamma_{2}$" not in costates
@@ -153,7 +153,7 @@ def test_bounds_among_constraints_are_called_so_and_change_no_costate_equation()
 
 
 def test_a_figure_is_referred_to_before_it_and_stands_before_the_quantities() -> None:
-    text = render(shipped("polar_orbit"))
+    text = document("polar_orbit")
     label = re.search(r"\\label\{([^}]*figure)\}", text)
     assert label
     assert text.index(rf"\ref{{{label[1]}}}") < text.index(r"\begin{figure}") < text.index(r"\begin{longtable}")
@@ -165,8 +165,8 @@ def test_works_cited_together_are_in_the_order_of_their_numbers() -> None:
 
 
 def test_what_is_said_of_a_kind_leads_to_its_literature_where_there_is_one_of_that_kind() -> None:
-    assert "primer vector is treated in" in render(shipped("transfer_fuel"))
-    assert "primer vector is treated in" not in render(shipped("brachistochrone"))
+    assert "primer vector is treated in" in document("transfer_fuel")
+    assert "primer vector is treated in" not in document("brachistochrone")
 
 
 def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas() -> None:
@@ -174,7 +174,7 @@ def test_works_are_joined_by_words_of_the_language_and_so_are_parts_of_formulas(
     assert "R.~E. Kopp, dan H.~G. Moyer" in works
     assert "dalam G.~Leitmann" in works
     assert "<" not in works
-    text = render(shipped("double_integrator_energy"), "id")
+    text = document("double_integrator_energy", "id")
     assert r"J_{\mathrm{diam}}" in text
     assert r"\mathrm{rest}" not in text
 
@@ -194,14 +194,14 @@ def test_rows_of_a_matrix_stand_apart_as_the_fractions_in_both_need(entry: str, 
 
 
 def test_what_stands_below_a_fraction_line_is_a_product_where_that_is_shorter() -> None:
-    text = render(shipped("shuttle"))
+    text = document("shuttle")
     assert r"{(r_e + h)^{3}}" in text
     assert r"r_e^{3}" not in text
     assert r"r_e \cos \theta + h \cos \theta" not in text
 
 
 def test_squares_of_sine_and_cosine_that_make_one_are_not_written() -> None:
-    assert r"\sin^{2} \theta + \cos^{2} \theta" not in render(shipped("shuttle"))
+    assert r"\sin^{2} \theta + \cos^{2} \theta" not in document("shuttle")
     x, a, b = sp.symbols("x a b", real=True)
     assert readable(a + b * sp.sin(x) ** 2 + b * sp.cos(x) ** 2) == a + b
     assert readable(a * sp.sin(x) ** 2 + b * sp.cos(x) ** 2).has(sp.sin)
@@ -214,28 +214,28 @@ def test_equations_of_motion_look_the_same_wherever_they_stand() -> None:
 
 def test_what_controls_gain_stands_apart_in_the_minimised_hamiltonian() -> None:
     gain = r"\frac{(\ell \lambda_{v_1} - \lambda_{v_2} \cos q_2)^{2}}{4 \ell^{2} (m_1 + m_2 \sin^{2} q_2)^{2}}"
-    assert gain in render(shipped("cart_pole"))
+    assert gain in document("cart_pole")
 
 
 def test_of_several_path_constraints_each_has_its_own_equations() -> None:
-    text = render(shipped("approach_cone"))
+    text = document("approach_cone")
     steps = ("constraint_order", "boundary_control", "constraint_multiplier", "constrained_costates")
     for step in (*steps, "junction_conditions"):
         part = text.partition(rf"\satsymstep{{approach_cone:{step}}}")[2].partition(r"\satsymstep")[0]
         assert part.count(r"for~$\Gamma_{1}$") == part.count(r"for~$\Gamma_{2}$") == 1
-    assert r"for~$\Gamma" not in render(shipped("beam"))
+    assert r"for~$\Gamma" not in document("beam")
 
 
 def test_scaled_time_has_its_letter_in_formulas_and_sentences() -> None:
-    text = re.sub(r"\\(?:label|ref|eqref|tag)\{[^}]*\}+", "", render(shipped("pitch_scaled_time")))
+    text = re.sub(r"\\(?:label|ref|eqref|tag)\{[^}]*\}+", "", document("pitch_scaled_time"))
     assert r"\tau_0 \le \tau \le \tau_f" in text
     assert r"\int_{\tau_0}^{\tau_f} L \,d\tau" in text
     assert not re.search(r"(?<![a-z])t_[0f]", text)
-    assert r"e^{A \tau} &=" in render(shipped("pitch_scaled")).replace("e^{A \\tau} =", "e^{A \\tau} &=")
+    assert r"e^{A \tau} &=" in document("pitch_scaled").replace("e^{A \\tau} =", "e^{A \\tau} &=")
 
 
 def test_laws_list_what_they_are_made_of_and_no_more() -> None:
-    angle, thrust, parts = (render(shipped(name)) for name in ("transfer_time", "transfer_fuel", "shuttle"))
+    angle, thrust, parts = (document(name) for name in ("transfer_time", "transfer_fuel", "shuttle"))
     assert r"minimised by the direction of $(-H_{\cos\beta},$ $-H_{\sin\beta})$:" in angle
     assert "switching function" not in angle
     assert r"switching function $|\mathbf{p}| - w$" in thrust
@@ -246,7 +246,7 @@ def test_laws_list_what_they_are_made_of_and_no_more() -> None:
 
 @pytest.mark.slow
 def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
-    text = render(shipped("reorientation"))
+    text = document("reorientation")
     arcs = text.partition(r"\satsymstep{reorientation:singular_arcs}")[2].partition(r"\satsymstep")[0]
     assert r"$\sigma_{u_1}^{(3)}$, $\sigma_{u_2}^{(3)}$ and $\sigma_{u_3}^{(3)}$" in arcs.partition("are not shown")[2]
     assert r"\sigma_{u_1}^{(3)} &=" not in arcs
@@ -258,25 +258,25 @@ def test_what_fills_pages_and_says_nothing_is_named_and_not_shown() -> None:
 
 @pytest.mark.slow
 def test_ratios_of_polynomials_stand_by_falling_powers() -> None:
-    text = render(shipped("pitch_classical"))
+    text = document("pitch_classical")
     assert r"G_{\theta}(s) &= \frac{K_1 s + K_2}{I_y s^{2} + K_1 s + K_2}" in text
     assert r"\Delta(s) &= s^{2} + \frac{K_1 s}{I_y} + \frac{K_2}{I_y}" in text
 
 
 def test_fixed_axes_are_not_said_to_turn() -> None:
-    assert "The unit vectors are fixed" in render(shipped("two_body"))
-    assert "The unit vectors rotate" in render(shipped("polar_orbit"))
+    assert "The unit vectors are fixed" in document("two_body")
+    assert "The unit vectors rotate" in document("polar_orbit")
 
 
 @pytest.mark.slow
 def test_a_fraction_that_all_terms_share_stands_before_the_parentheses() -> None:
-    text = render(shipped("reorientation"))
+    text = document("reorientation")
     assert r"\tfrac{1}{2} \lambda_{q_1} (q_2 \omega_3 - q_3 \omega_2 + q_4 \omega_1)" in text
     assert r"\bigl(\tfrac{1}{2} (" not in text
 
 
 def test_bodies_in_space_are_named_in_the_language_of_the_document() -> None:
-    text = render(shipped("gimballed_wheel"), "id")
+    text = document("gimballed_wheel", "id")
     assert r"\boldsymbol{\omega}^{\mathrm{roda}}" in text
     assert r"W^{\mathrm{roda}}" in text
     assert r"\mathrm{modus\ x}" in text
@@ -291,7 +291,7 @@ def test_a_matrix_of_one_row_is_a_list() -> None:
 @pytest.mark.parametrize("name", ["catalyst", "beam", "two_body"])
 def test_no_fraction_parts_the_lines_of_a_sentence(name: str) -> None:
     for language in languages():
-        text = re.sub(r"(?s)\\begin\{(align|equation)\*?\}.*?\\end\{\1", "", render(shipped(name), language))
+        text = re.sub(r"(?s)\\begin\{(align|equation)\*?\}.*?\\end\{\1", "", document(name, language))
         assert re.findall(r"[^$]*\$[^$]*\\frac[^$]*\$", text) == []
 
 

@@ -19,7 +19,8 @@ import sympy as sp
 from _pytest.mark import ParameterSet
 
 from satsym import source_files, user_cache
-from satsym.report import stamps
+from satsym.report import stamps, texts
+from satsym.report.latex.document import render
 from satsym.symbolic import Derivation, Model, Problem, derive, loader
 from satsym.symbolic.declared import identity
 
@@ -67,6 +68,29 @@ def each(*others: str, left: Iterable[str] = ()) -> list[ParameterSet]:
 def shipped(name: str) -> Derivation:
     """The derivation of a shipped problem or model."""
     return derived(stated(name))
+
+
+@cache
+def document(name: str, language: str = "en") -> str:
+    """The typeset derivation of a shipped problem or model, rendered once for all tests that read in it."""
+    key = identity(stated(name))
+    place = _folder() / f"{key}-{language}-{_texts()}.tex"
+    text = user_cache.read(place).decode() if key else ""
+    if not text:
+        text = render(shipped(name), language)
+        if key:
+            user_cache.write(place, text.encode())
+    return text
+
+
+@cache
+def _texts() -> str:
+    """A digest of the sentences and translations of which documents are made."""
+    folders = {Path(texts.__file__).parent, *(path.parent for path in loader.shipped())}
+    found = hashlib.blake2b(digest_size=16)
+    for path in sorted(path for folder in folders for path in folder.glob("*.toml")):
+        found.update(path.read_bytes())
+    return found.hexdigest()
 
 
 @cache

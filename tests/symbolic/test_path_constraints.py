@@ -14,7 +14,7 @@ from satsym.symbolic.derivation import DerivationError, Step
 from satsym.symbolic.model import Convention, t
 from satsym.symbolic.principle.path import mixed_constraints
 from satsym.symbolic.principle.path import path_constraints as steps
-from tests.support.derived import derived, shipped, stated
+from tests.support.derived import derived, document, shipped, stated
 
 STATES = tuple(Variable(name, name) for name in ("a", "b", "d", "e"))
 (a, b, d, e), (u,) = symbols_of(STATES), symbols_of((Variable("u", "u"),))
@@ -148,7 +148,7 @@ def test_laws_near_the_boundary_of_an_angle_are_typeset(language: str):
 
 @pytest.mark.parametrize("language", ["en", "id"])
 def test_it_is_typeset(language: str):
-    text = render(shipped("return_in_slot"), language)
+    text = document("return_in_slot", language)
     assert r"\theta - \Delta - \omega t \le 0" in text.replace("\n", " ")
     assert r"\eta_{1}" in text
     assert r"\zeta_{2}" in text
