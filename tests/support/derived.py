@@ -24,8 +24,8 @@ from satsym.report.latex.document import render
 from satsym.symbolic import Derivation, Model, Problem, derive, loader
 from satsym.symbolic.declared import identity
 
-SHARE = 3
-"""Every third shipped model is derived for tests of all of them, others after each change of the engine."""
+SHARE = 6
+"""Every sixth shipped model is derived for tests of all of them, others after each change of the engine."""
 
 _HOME = Path(__file__).resolve().parents[2] / ".pytest_cache" / "derivations"
 
