@@ -16,7 +16,7 @@ from tests.bench.truth.answer import Answer, Truth
 from tests.bench.truth.case import OWN, Case
 from tests.bench.truth.judge import Outcome, Wrong
 
-PARTS = 12
+PARTS = 45
 LEAST = Answer(Truth.MINIMUM, 1.0, "by hand")
 ANSWER = {"status": "converged", "cost": 1.0, "verdict": "certified", "kinds": ["seeded starts 4/4"]}
 ANSWER |= {"missed": 0.0, "off cost": 0.0, "out": 0.0}

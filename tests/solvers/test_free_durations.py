@@ -168,7 +168,7 @@ def test_a_minimum_beyond_long_durations_is_found(guess):
     assert found.objective == pytest.approx(cost(float(found.times[-1])), rel=1e-7)
 
 
-@pytest.mark.parametrize("guess", [0.05, 60.0])
+@pytest.mark.parametrize("guess", [pytest.param(0.05, marks=pytest.mark.slow), 60.0])
 def test_a_guess_that_leads_nowhere_does_no_harm(guess):
     found = by_search.collocation(weighed(TWO, 0.07, guess))
     assert_least(found, TWO, 0.07)
