@@ -5,15 +5,13 @@ Tests of the act of solving call ``satsym.solvers.solve`` themselves.
 
 from __future__ import annotations
 
-from typing import Any
-
 from satsym import solvers
 from satsym.instance import Instance
-from satsym.solution import Progress, Solution
+from satsym.solution import Iteration, Progress, Solution
 
 _REALLY = solvers.solve
 
-_KNOWN: list[tuple[Instance, bool, Solution, list[Any]]] = []
+_KNOWN: list[tuple[Instance, bool, Solution, list[Iteration]]] = []
 """Each instance that was solved, whether its answer was examined, the answer, and the iterations on the way."""
 
 
@@ -21,12 +19,13 @@ def solve(instance: Instance, progress: Progress | None = None, *, examined: boo
     """Solve an instance, or return what was found for an equal one, having reported the same iterations."""
     for one, certified, solution, iterations in _KNOWN:
         if certified == examined and one == instance:
-            for iteration in iterations if progress else ():
-                progress(iteration)  # type: ignore[misc]
+            for iteration in iterations:
+                if progress:
+                    progress(iteration)
             return solution
-    passed: list[Any] = []
+    passed: list[Iteration] = []
 
-    def noted(iteration: Any) -> None:
+    def noted(iteration: Iteration) -> None:
         passed.append(iteration)
         if progress:
             progress(iteration)
