@@ -10,7 +10,9 @@ nodes.
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from itertools import product
 from math import prod
 from typing import NoReturn
@@ -30,6 +32,9 @@ _FUNCTIONS = {
 
 MOST_REPEATED = 60
 """Largest number of steps of an iteration in generated code."""
+
+CALLS_PER_LEVEL = 6
+"""Number of nested calls that a visitor of syntax trees may need for each level of a tree."""
 
 
 class Unexpected(Exception):
@@ -59,6 +64,20 @@ def text_of(node: ast.AST) -> str:
         return ast.unparse(node)
     except ValueError:  # an int of thousands of digits, some f-strings
         refuse(node, "has a value that cannot be written down")
+
+
+@contextmanager
+def recursing_through(*trees: ast.AST) -> Iterator[None]:
+    """Allow functions to recurse through syntax trees, in which a long sum is nested once for each of its terms."""
+    deepest, level = 0, list(trees)
+    while level:
+        deepest, level = deepest + 1, [child for node in level for child in ast.iter_child_nodes(node)]
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(before + CALLS_PER_LEVEL * deepest)
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
 
 
 class Body:

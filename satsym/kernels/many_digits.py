@@ -20,6 +20,7 @@ import numpy as np
 from satsym.agreement import MOST_DIGITS, NEGLIGIBLE_FRACTION, Sides, slopes
 from satsym.arrays import Array
 from satsym.kernels import plain
+from satsym.kernels.bodies import recursing_through
 from satsym.kernels.contract import BATCH
 from satsym.kernels.core import Function
 from satsym.kernels.evaluation import Evaluation, Relation
@@ -60,7 +61,8 @@ def watched(text: str, written: Mapping[float, Any]) -> dict[str, tuple[Function
     for node in ast.parse(text).body:
         if isinstance(node, ast.FunctionDef):
             watching = _Watched()
-            changed, seen = watching.visit(node), dict[int, Any]()
+            with recursing_through(node):
+                changed, seen = watching.visit(node), dict[int, Any]()
             if watching.count:
                 note = {_Watched.NOTE: _noting(seen)}
                 changed.body = _needed(changed.body)
@@ -104,7 +106,8 @@ def _defined(
 ) -> dict[str, Function]:
     """Return the functions of syntax trees by name, in the working precision of mpmath."""
     constants = _Constants(written)
-    body = [constants.visit(node) for node in body]
+    with recursing_through(*body):
+        body = [constants.visit(node) for node in body]
     names: dict[str, Any] = {
         "__builtins__": {"len": len, "range": range},
         "math": SimpleNamespace(**_SHARED, **_OF_FLOATS),
@@ -112,8 +115,10 @@ def _defined(
         **constants.values,
         **besides,
     }
-    module = ast.fix_missing_locations(ast.Module(list(body), []))
-    exec(compile(module, "<generated>", "exec"), names)  # noqa: S102 - definitions only, each of them checked
+    module = ast.Module(list(body), [])
+    with recursing_through(module):
+        code = compile(ast.fix_missing_locations(module), "<generated>", "exec")
+    exec(code, names)  # noqa: S102 - definitions only, each of them checked
     return {node.name: names[node.name] for node in body}
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.kernels import Kernels, consistency, load
+from satsym.kernels import Kernels, consistency, load, many_digits
 from satsym.kernels.core import Function
 from satsym.kernels.evaluation import Evaluation, with_copies
 from satsym.kernels.many_digits import LongEvaluation
@@ -89,3 +90,13 @@ def test_values_and_slopes_have_the_digits_that_floats_lose() -> None:
     assert of("dynamics")[0] == pytest.approx(speed**2 * angle, rel=1e-15)
     assert of.slope("dynamics", "x")[0] == pytest.approx(np.array([2 * speed * angle, speed**2]), rel=1e-15)
     assert of.single("dynamics")(0.0, (0.5, 0.25), (0.1,), ())[0] == 0.0625
+
+
+def test_sums_may_be_longer_than_python_may_recurse() -> None:
+    terms = " + ".join(f"{k}.5*t" for k in range(2000))
+    text = f"def running_cost(t):\n    return {terms} if t > 0.0 else 0.0\n"
+    with mp.workdps(30):
+        assert many_digits.functions_of(text, {})["running_cost"](mp.mpf(1)) == 2000 * mp.mpf("1000")
+        function, seen = many_digits.watched(text, {})["running_cost"]
+        assert function(mp.mpf(3)) == 3 * 2000 * mp.mpf("1000")
+    assert seen == {0: 3}

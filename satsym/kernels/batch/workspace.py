@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
+from satsym.kernels.bodies import recursing_through
+
 LANES = 16
 """Number of columns of a block: several vectors, so that the processor overlaps their divisions."""
 
@@ -140,16 +142,17 @@ def inlined(text: str, function: str, loads: Loads, prefix: str) -> Inlined:
     renamed = _Renamed({name: loads[name](0) for name in arguments if name == "t"}, prefix)
     lines: list[str] = []
     *statements, last = definition.body[1:]
-    for statement in statements:
-        match statement:
-            case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Name(id=group)) if group in arguments:
-                lines += [f"{prefix}{ast.unparse(name)} = {loads[group](k)}" for k, name in enumerate(targets)]
-            case _:
-                lines += ast.unparse(renamed.visit(statement)).splitlines()
-    assert isinstance(last, ast.Return)
-    value = last.value
-    results: Sequence[ast.expr] = value.elts if isinstance(value, ast.Tuple) else [value] if value else []
-    return Inlined(tuple(lines), tuple(ast.unparse(renamed.visit(one)) for one in results))
+    with recursing_through(definition):
+        for statement in statements:
+            match statement:
+                case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Name(id=group)) if group in arguments:
+                    lines += [f"{prefix}{ast.unparse(name)} = {loads[group](k)}" for k, name in enumerate(targets)]
+                case _:
+                    lines += ast.unparse(renamed.visit(statement)).splitlines()
+        assert isinstance(last, ast.Return)
+        value = last.value
+        results: Sequence[ast.expr] = value.elts if isinstance(value, ast.Tuple) else [value] if value else []
+        return Inlined(tuple(lines), tuple(ast.unparse(renamed.visit(one)) for one in results))
 
 
 class _Renamed(ast.NodeTransformer):

@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb, fmpq
 
 from satsym.kernels import Kernels
-from satsym.kernels.bodies import Unexpected
+from satsym.kernels.bodies import Unexpected, recursing_through
 from satsym.kernels.checking import check
 from satsym.kernels.loading import shipped_text
 from satsym.proof.balls.arithmetic import Answers, BeyondProof, constant, mathematics
@@ -61,8 +61,9 @@ class BallKernel:
 
     def _compiled(self, name: str) -> Callable[..., Any]:
         exact = _Exact(name)
-        node = exact.visit(ast.parse(ast.unparse(self._definitions[name])).body[0])
-        code = compile(ast.fix_missing_locations(ast.Module([node], [])), f"<{name} on balls>", "exec")
+        with recursing_through(self._definitions[name]):
+            node = exact.visit(ast.parse(ast.unparse(self._definitions[name])).body[0])
+            code = compile(ast.fix_missing_locations(ast.Module([node], [])), f"<{name} on balls>", "exec")
         namespace: dict[str, Any] = {
             "__builtins__": {},
             "math": mathematics(),
