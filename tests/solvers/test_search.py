@@ -354,6 +354,12 @@ def test_states_set_equal_at_the_end_have_scales_alike() -> None:
     assert programme_of(case).sizes.states[0] == pytest.approx(2.0)
 
 
+def test_the_least_thrust_is_zero_only_where_engines_may_be_off() -> None:
+    case = instances.load("transfer-fuel")
+    names = [extremals._kept(case, norm, label).name for norm, label in ((1.0, 1), (0.1, 0), (0.0, 0))]
+    assert names == ["+", "-", "0"]
+
+
 def test_what_fails_its_certificate_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     case = instances.load("double-integrator-time")
     found = by_search.instead(case, None, certified=True)

@@ -188,7 +188,7 @@ def _throttled(at: Motion) -> Arcs | None:
 
 def _kept(instance: Instance, norm: float, label: int) -> Law:
     within: ControlSet = instance.control_set.saturated((norm or SMALLEST_NORM,))
-    law = derived(instance, within.arguments, "+" if label else "0")
+    law = derived(instance, within.arguments, "+" if label else "-" if norm else "0")
     if norm:
         return law
 
