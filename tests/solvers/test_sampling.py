@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy
 from scipy.integrate import solve_ivp
 
+import satsym
 from satsym import instance as instances
 from satsym.instance import Instance
 from satsym.solvers.search.controls import controls_of
@@ -15,8 +17,17 @@ from satsym.solvers.search.durations import first_duration
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import sizes_of
 from satsym.solvers.search.starts import planning, sampling
+from satsym.status import Verdict
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of, t
 
-SHIPPED = ("linear-tangent", "transfer-fuel", "reorientation", "ends-3-given-time", "double-integrator-fuel")
+SHIPPED = (
+    "linear-tangent",
+    "transfer-fuel",
+    "reorientation",
+    "ends-3-given-time",
+    "double-integrator-fuel",
+    "catalyst",
+)
 
 
 def sampled(case: Instance, group: int = 1) -> tuple[Programme, list[sampling.Sample]]:
@@ -80,10 +91,27 @@ def test_a_start_from_one_is_the_motion_itself() -> None:
             np.testing.assert_allclose(row, np.interp(at, found[0].times, own), rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.parametrize(("name", "any_"), [("linear-tangent", True), ("catalyst", False), ("inspection", False)])
-def test_they_are_tried_where_something_is_asked_at_the_end_and_nothing_on_the_way(name: str, any_: bool) -> None:
+@pytest.mark.parametrize(("name", "any_"), [("linear-tangent", True), ("catalyst", True), ("inspection", False)])
+def test_they_are_tried_where_nothing_is_asked_on_the_way(name: str, any_: bool) -> None:
     case = instances.load(name)
     controls = controls_of(case)
     assert controls is not None
     plans = planning.plans(case, controls, first_duration(case, controls))
     assert any(plan.sampled for plan in plans) is any_
+
+
+@pytest.mark.slow
+def test_from_a_free_end_the_cheapest_of_several_wells_is_found() -> None:
+    """Waves on straight lines lead to motions that cost 0.158 and -0.109. The value is that of a direct method."""
+    states = (Variable("x", "x", "1"), Variable("v", "v", "1"))
+    controls = (Variable("u", "u", "1"),)
+    x, v = symbols_of(states)
+    (u,) = symbols_of(controls)
+    rates = {x: v, v: u + x - x**3 + 0.0839 * sympy.cos(t)}
+    model = FirstOrder(name="duffing", title="D", states=states, controls=controls, parameters=(), rates=rates)
+    wells = 1.4216 * ((x**2 - 1) ** 2 - x / 9)
+    problem = Problem(name="wells", title="W", model=model, running_cost=u**2 / 2, terminal_cost=wells)
+    found = satsym.solve(satsym.Instance.of(problem, initial={"x": 0.4379, "v": 0.3009}, tf=7.2568))
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    assert found.objective == pytest.approx(-0.15394299405, rel=1e-9)

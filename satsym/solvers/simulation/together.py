@@ -58,8 +58,8 @@ def steps_together(instance: Instance, start: Array, controls: Array, lasting: A
         yield Step(times, np.array(states[:4]), u, x)
 
 
-def costs_together(instance: Instance, controls: Array, lasting: Array) -> Array:
-    """Return the costs of S motions from the initial state, shape (S,); infinite if a motion leaves its domain.
+def costs_together(instance: Instance, controls: Array, lasting: Array, start: Array | None = None) -> Array:
+    """Return the costs of S motions, shape (S,); infinite if a motion leaves its domain.
 
     Parameters
     ----------
@@ -69,9 +69,12 @@ def costs_together(instance: Instance, controls: Array, lasting: Array) -> Array
         Controls at the nodes and midpoints of N steps, shape (m, 2 N + 1, S); they are projected to their bounds.
     lasting
         Durations, shape (S,).
+    start
+        Initial states, shape (n, S); by default the initial state of the instance.
     """
     model, p = instance.model, instance.parameters
-    start = np.repeat(np.array(instance.initial)[:, None], len(lasting), axis=1)
+    if start is None:
+        start = np.repeat(np.array(instance.initial)[:, None], len(lasting), axis=1)
     within = np.array([instance.control_set.project(u) for u in controls.transpose(1, 0, 2)])
     states, total, h = [start], np.zeros(len(lasting)), 2.0 * lasting / (len(within) - 1)
     with np.errstate(all="ignore"):

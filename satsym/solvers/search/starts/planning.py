@@ -50,7 +50,7 @@ TURNS = (0, -1, 1, 2, 3)
 """Numbers of revolutions that are tried if the duration is free; -1 is one turn in the opposite direction."""
 
 SAMPLED = sum(count for count, _ in sampling.GROUPS)
-"""Number of starts that are random motions close to the end."""
+"""Number of starts that are random motions."""
 
 DURATIONS = (4.0, 0.25, 16.0, 2.0**-4, 2.0**-6)
 """Durations, relative to the initial guess, that are fixed at first."""
@@ -158,7 +158,7 @@ def plans(instance: Instance, controls: Controls, duration: float) -> list[Plan]
         found[1:1] = [Plan(turned=0.0), Plan(turned=-0.5), Plan(turned=0.5)]
     if not given:
         found.insert(1, Plan(scale=2.5))  # a competitor of another duration is always among the first
-    if not instance.model.spec.interior and (instance.final or instance.model.spec.multipliers):
+    if not instance.model.spec.interior:
         for k in range(SAMPLED):  # every other one
             found.insert(2 + 2 * k, Plan(sampled=k + 1))
     return [Plan(guessed=True), *found] if instance.guess.state or instance.guess.control else found

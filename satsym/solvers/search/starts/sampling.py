@@ -1,5 +1,7 @@
 """Starts that obey the equations of motion: motions under random controls that come close to the final conditions.
 
+Where there are no final conditions, they are the cheapest of the random motions.
+
 Straight lines and waves tell nothing about the dynamics. Where small controls decide where a motion ends, as in a
 passage of a moon, no wave leads to the cheapest motion, but some of many random motions come close to it.
 """
@@ -15,7 +17,7 @@ from satsym.arrays import Array
 from satsym.solvers.search.programme import Programme
 from satsym.solvers.search.sizes import wanted
 from satsym.solvers.search.starts import ends
-from satsym.solvers.simulation.together import steps_together
+from satsym.solvers.simulation.together import costs_together, steps_together
 
 GROUPS, STEPS = ((3, 1000), (8, 4000), (12, 4000)), 128
 """Numbers of starts in each group, and of the random motions that they are chosen from: a further group is drawn if the
@@ -49,7 +51,10 @@ class Sample:
 
 
 def sampled(programme: Programme, group: int) -> list[Sample]:
-    """Return random motions of a group that differ and come close to the final conditions, the closest first."""
+    """Return random motions of a group that differ and come close to the final conditions, the closest first.
+
+    Without final conditions, they are the cheapest ones.
+    """
     instance, controls, sizes = programme.instance, programme.controls, programme.sizes
     most, count = GROUPS[group]
     rng = np.random.default_rng(group)
@@ -66,7 +71,10 @@ def sampled(programme: Programme, group: int) -> list[Sample]:
     halves[::2], halves[1::2] = u, 0.5 * (u[:-1] + u[1:])
     with np.errstate(all="ignore"):
         x = np.array([begun, *(step.end for step in steps_together(instance, begun, halves, lasting))])
-        missed = _missed(programme, times[-1], x[-1])
+        if instance.final or instance.model.spec.multipliers:
+            missed = _missed(programme, times[-1], x[-1])
+        else:
+            missed = costs_together(instance, halves.transpose(1, 0, 2), lasting, begun)
     order = [m for m in np.argsort(missed) if np.isfinite(missed[m])]
     chosen = _different(x[::COMPARED].transpose(2, 0, 1), order, most)
     return [Sample(times[:, m], x[:, :, m].T, controls.variables(u[:, :, m].T)) for m in chosen]
