@@ -28,9 +28,9 @@ from satsym.solvers.search.transcription import LONGEST_DURATION, SHORTEST_DURAT
 STARTS = 48
 """Maximum number of starts of the direct search."""
 
-ITERATIONS, ASTRAY = 200, 50
-"""Maximum number of iterations of the interior-point code for a start, and for a competitor from a curved path to a
-random final state. The latter need not lead to a solution, and is found soon or hardly ever."""
+ITERATIONS, BESIDE, ASTRAY = 200, 120, 50
+"""Maximum number of iterations of the interior-point code for a start; for a competitor, if its duration is given; and
+for a competitor from a curved path to a random final state, which is found soon or hardly ever."""
 
 WEAK, NEARLY_WITHIN = 7, 1.5
 """``WEAK`` is the number of starts before those that ignore the bounds of controls. ``NEARLY_WITHIN`` is the largest
@@ -59,9 +59,9 @@ def started(
     instance: Instance,
     limits: Limits,
     loose: str,
-    most: int = ITERATIONS,
     way: tuple[Array, Array] | None = None,
     weak: bool = False,
+    beside: bool = False,
     first: int = 0,
     skipped: Callable[[Plan], bool] = lambda _: False,
 ) -> Iterator[tuple[int, Plan, Found]]:
@@ -71,6 +71,8 @@ def started(
     ----------
     weak
         Whether some starts ignore the bounds of controls at first.
+    beside
+        Whether the solutions are competitors of an answer, which need not all be found.
     first
         Index of the first start; earlier ones are left out.
     skipped
@@ -99,8 +101,8 @@ def started(
         if skipped(plan):
             continue
         with np.errstate(all="ignore"):
-            bent = most < ITERATIONS and plan.drawn and plan.noise
-            iterations = min(most, ASTRAY) if bent else most if number else ITERATIONS
+            most = BESIDE if beside and number and instance.tf is not None else ITERATIONS
+            iterations = ASTRAY if beside and plan.drawn and plan.noise else most
             if plan.sampled:
                 sample = _sample(programmes[0], plan.sampled, groups)
                 if sample is None:

@@ -12,7 +12,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.iteration import Limits, Meter
 from satsym.solvers.search import nlp
-from satsym.solvers.search.coarse import FIRST_SMOOTHINGS, ITERATIONS, SIMILAR
+from satsym.solvers.search.coarse import BESIDE, FIRST_SMOOTHINGS, ITERATIONS, SIMILAR
 from satsym.solvers.search.mesh import UNRESOLVED, graded, refined
 from satsym.solvers.search.motion import Motion, motion, violates
 from satsym.solvers.search.nlp import Found
@@ -21,8 +21,8 @@ from satsym.solvers.search.starts import planning
 
 Answer = TypeVar("Answer")
 
-BESIDE, ON_FINER_MESH = 120, 200
-"""Maximum number of iterations of the interior-point code for a competitor, and on a finer mesh."""
+ON_FINER_MESH = 200
+"""Maximum number of iterations of the interior-point code on a finer mesh."""
 
 FINER, SETTLED_COST, SMOOTHINGS = 0.1, 1e-6, (1e-3, 1e-4, 1e-4, 1e-4, 1e-4)
 """``FINER`` is the fraction of the work that the finer meshes of one start may take; ``SETTLED_COST`` the relative

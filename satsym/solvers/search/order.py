@@ -21,7 +21,7 @@ from satsym.instance import Instance
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.iteration import Limits
 from satsym.solvers.search.coarse import SIMILAR, STARTS, at_edge, same, started
-from satsym.solvers.search.following import BESIDE, LOST, finer, followed, part
+from satsym.solvers.search.following import LOST, finer, followed, part
 from satsym.solvers.search.mesh import refined
 from satsym.solvers.search.motion import Motion, motion
 from satsym.solvers.search.nlp import Found
@@ -166,7 +166,13 @@ def _further(
     constrained = bool(instance.model.spec.path_constraints)
     patient, probe = constrained or ends.random(instance), AROUND if constrained else PROBE
     further = started(
-        instance, limits, loose, BESIDE, past.first, first=past.begun, skipped=lambda plan: _hopeless(plan, past.tried)
+        instance,
+        limits,
+        loose,
+        past.first,
+        beside=True,
+        first=past.begun,
+        skipped=lambda plan: _hopeless(plan, past.tried),
     )
     for number, plan, found in further:
         past.begun = number + 1
