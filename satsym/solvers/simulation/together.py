@@ -91,8 +91,8 @@ def costs_together(instance: Instance, controls: Array, lasting: Array, start: A
 
 
 def _terminal_cost(instance: Instance, t: float, end: Array) -> float:
-    """Return the terminal cost of a final state; infinite if it overflows."""
+    """Return the terminal cost of a final state; infinite if it overflows or is not defined there."""
     try:
         return instance.model.terminal_cost(t, tuple(end.tolist()), instance.parameters)
-    except OverflowError:
+    except (ArithmeticError, ValueError):
         return float("inf")
