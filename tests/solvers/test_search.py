@@ -352,6 +352,9 @@ def test_states_set_equal_at_the_end_have_scales_alike() -> None:
     problem = Problem(name="pursued", title="P", model=model, running_cost=u**2 / 2, terminal_constraints=(x - target,))
     case = satsym.Instance.of(problem, initial={"x": 1e-6, "v": 0.0, "X": 2.0}, tf=1.0).case
     assert programme_of(case).sizes.states[0] == pytest.approx(2.0)
+    steep = replace(problem, name="rooted", terminal_constraints=(sqrt(v) - target,))  # without bound at the start
+    case = satsym.Instance.of(steep, initial={"x": 1.0, "v": 0.0, "X": 2.0}, tf=1.0).case
+    assert programme_of(case).sizes.states[2] == pytest.approx(2.0)
 
 
 def test_the_least_thrust_is_zero_only_where_engines_may_be_off() -> None:

@@ -152,13 +152,13 @@ def _of_states(instance: Instance, controls: Controls, duration: float, rest: Re
 
 
 def _balanced(instance: Instance, controls: Controls, size: Array) -> Array:
-    """Raise the scales of states that a terminal condition sets against one state with a larger effect on it."""
+    """Raise the scales of states that a linear terminal condition sets against one state with a larger effect on it."""
     n, size = len(size), size.copy()
     points = Points(instance, controls, (), size)
-    y = np.zeros((points.local, 1))
-    y[:n, 0], y[-1] = instance.initial, instance.t0
-    slopes = np.nan_to_num(np.abs(points.slopes(points.ends, y)[:, :n, 0]))
-    for row in slopes:
+    y = np.zeros((points.local, 2))
+    y[:n], y[-1] = np.array(instance.initial)[:, None] + size[:, None] * np.arange(2), instance.t0
+    here, beside = np.abs(points.slopes(points.ends, y)[:, :n]).transpose(2, 0, 1)
+    for row in here[np.isclose(here, beside).all(axis=1)]:
         pair = np.flatnonzero(row)
         if len(pair) == 2:
             size[pair] = np.maximum(size[pair], (row * size).max() / row[pair])

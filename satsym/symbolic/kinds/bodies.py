@@ -13,7 +13,7 @@ from satsym.spec import ModeGroup, Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.model import Model, symbols_of
 
-if TYPE_CHECKING:  # takes as long to import as most models take to be looked up
+if TYPE_CHECKING:  # it takes half a second to import, and only derivations of rigid bodies use it
     from sympy.physics.mechanics import ReferenceFrame, RigidBody, Vector
 
 CLOCK = sp.Symbol("t")

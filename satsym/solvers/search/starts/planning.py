@@ -87,7 +87,7 @@ class Plan:
     parts
         Fractions of the duration between waypoints; empty if they are equal.
     sampled
-        Number of the random motion that the start is, of those that come close to the end; 0 if it is none.
+        Number of the random motion that the start is, of those that end well or are cheap; 0 if it is none.
     """
 
     scale: float = 1.0
